@@ -185,7 +185,7 @@ void CandidateProver::prove() {
   const GlProgram& shader = program();
   gl_.UseProgram(shader.name());
   timer_.time(clock_, [&] {
-    for (std::size_t i = 0; i < filled_.size(); ++i) start_block(i);
+    for (std::size_t i = 0; i < filled_.size(); ++i) start_block(shader, i);
   });
   enter_stage(clock_, Stage::kReadBack);
   wait();
@@ -201,17 +201,16 @@ void CandidateProver::forget() {
   has_spheres_ = false;
 }
 
-void CandidateProver::start_block(std::size_t number) {
+void CandidateProver::start_block(const GlProgram& shader, std::size_t number) {
   const auto slots = static_cast<GLuint>(filled_[number].slots);
-  const GLuint name = program().name();
   gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_CANDIDATES, blocks_.name(),
                       static_cast<GLintptr>(number * sizeof(Block)), static_cast<GLsizeiptr>(sizeof(Block)));
-  gl_.ProgramUniform1ui(name, VESTIGE_UNIFORM_FIRST_SLOT, static_cast<GLuint>(number * kBlockSlots));
+  gl_.ProgramUniform1ui(shader.name(), VESTIGE_UNIFORM_FIRST_SLOT, static_cast<GLuint>(number * kBlockSlots));
   if (options_.stage == ProofStage::kGeometry) {
     gl_.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(slots * kSlotLanes));
     return;
   }
-  gl_.ProgramUniform1ui(name, VESTIGE_UNIFORM_SLOT_COUNT, slots);
+  gl_.ProgramUniform1ui(shader.name(), VESTIGE_UNIFORM_SLOT_COUNT, slots);
   constexpr GLuint kGroupSlots = kGpuGroupThreads / kSlotLanes;
   gl_.DispatchCompute(options_.as_on_gpu ? (slots + kGroupSlots - 1) / kGroupSlots : 1, 1, 1);
 }

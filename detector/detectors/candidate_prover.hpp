@@ -70,7 +70,7 @@ class CandidateProver {
   /// Proves what was added since the last call, and makes room.
   void prove();
   void forget();
-  void start_block(std::size_t number);
+  void start_block(const GlProgram& shader, std::size_t number);
   void wait();
   void read_words();
   const GlProgram& program();

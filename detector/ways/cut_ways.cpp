@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 
 // Where a segment is cut. Let x(t) = s + t (e - s) be the segment, h the largest places of the skin along an axis,
 // grown by the radius of a sphere. At a contact, |x(t)| <= h along each axis, with one exception below. So t lies
@@ -117,12 +116,12 @@ Ways WayCutter::cut(const DetectorFrame& frame) {
 CrossAxes cross_axes(const Segment& cut_segment) {
   CrossAxes axes;
   axes.way = cut_segment.end - cut_segment.start;
+  const glm::dvec3 way(axes.way);
+  const glm::dvec3 start(cut_segment.start);
+  const glm::dvec3 end(cut_segment.end);
   for (int axis = 0; axis < 3; ++axis) {
     const int j = (axis + 1) % 3;
     const int k = (axis + 2) % 3;
-    const glm::dvec3 way(axes.way);
-    const glm::dvec3 start(cut_segment.start);
-    const glm::dvec3 end(cut_segment.end);
     const double of_start = start[j] * way[k] - start[k] * way[j];
     const double of_end = end[j] * way[k] - end[k] * way[j];
     const double size = std::max(std::abs(start[j]), std::abs(end[j])) * std::abs(way[k]) +

@@ -39,30 +39,23 @@ std::vector<TraceFrame> calm_scene() {
   return test::scene("hug", builtin_avatar(), kColliders, static_cast<int>(kHostileFrames), 5);
 }
 
-std::unique_ptr<Detector> make_skipping_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
-                                                     const DetectorOptions& options) {
-  DetectorOptions skipping = options;
-  skipping.skip = Skip::kOn;
-  return make_cpu_detector(avatar, map, skipping);
-}
-
 std::unique_ptr<Detector> make_geometry(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
   return make_geometry_detector(test::make_context(), avatar, map, options);
 }
 
-std::unique_ptr<Detector> make_skipping_geometry(const Avatar& avatar, const ActuatorMap& map,
-                                                 const DetectorOptions& options) {
-  DetectorOptions skipping = options;
-  skipping.skip = Skip::kOn;
-  return make_geometry(avatar, map, skipping);
+std::unique_ptr<Detector> make_compute(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
+  return make_compute_detector(test::make_context(), avatar, map, options);
 }
 
-std::unique_ptr<Detector> make_skipping_compute(const Avatar& avatar, const ActuatorMap& map,
-                                                const DetectorOptions& options) {
+template <decltype(make_cpu_detector)* kMake>
+std::unique_ptr<Detector> make_skipping(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
   DetectorOptions skipping = options;
   skipping.skip = Skip::kOn;
-  return make_compute_detector(test::make_context(), avatar, map, skipping);
+  return kMake(avatar, map, skipping);
 }
+constexpr auto make_skipping_cpu_detector = make_skipping<make_cpu_detector>;
+constexpr auto make_skipping_geometry = make_skipping<make_geometry>;
+constexpr auto make_skipping_compute = make_skipping<make_compute>;
 
 test::SceneRun run(const std::vector<TraceFrame>& scene, Method method, decltype(make_cpu_detector)* make) {
   const auto detector = make(builtin_avatar(), no_map(), {Surface::kAll, kHashedPlanes, method});
