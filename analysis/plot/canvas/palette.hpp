@@ -25,11 +25,13 @@ inline constexpr Colour kPurple = {204, 121, 167};
 inline constexpr Colour kOlive = {153, 153, 51};
 inline constexpr Colour kWine = {136, 34, 85};
 inline constexpr Colour kIndigo = {51, 34, 136};
-inline constexpr Colour kDarkGreen = {17, 119, 51};
+
+// Neither has a further colour that is far from all of these.
+inline constexpr Colour kBrown = {110, 62, 24};
 
 /// Colours for lines on white. They exclude yellow, which is too pale, and black, which marks the published points.
 inline constexpr std::array<Colour, 10> kLineColours = {kBlue,    kVermillion, kGreen, kPurple, kOrange,
-                                                        kSkyBlue, kOlive,      kWine,  kIndigo, kDarkGreen};
+                                                        kSkyBlue, kOlive,      kWine,  kIndigo, kBrown};
 
 /// Returns a line colour for each detector. A detector has the same colour in every figure. If a detector occurs twice,
 /// the second line takes a colour that is free, and so does a detector without a colour of its own.
