@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detector/broad/meshlet_triangles.cpp"  // NOLINT(bugprone-suspicious-include)
@@ -177,16 +178,23 @@ inline AxesLanes<D> everywhere(const CrossAxes& axes) {
   return {three(axes.way), three(axes.moment), three(axes.spare)};
 }
 
-/// A segment, in the forms that are compared.
-struct Tested {
+/// A segment that is whole, in the forms that are compared.
+struct WholeSegment {
   const Segment& segment;
   SegmentBox box;
-  bool is_cut;
-  CrossAxes axes;  ///< if it is cut
+};
+
+/// A segment that is cut, likewise.
+struct CutSegment {
+  const Segment& segment;
+  SegmentBox box;
+  CrossAxes axes;
 };
 
 /// Returns a word whose bit k says whether triangle i + k may meet the segment.
+template <typename Tested>
 inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Tested& tested, std::size_t i) {
+  constexpr bool kIsCut = std::is_same_v<Tested, CutSegment>;
   const D d;
   const auto number = [&](const MeshletTriangles::Numbers& numbers) { return hn::Load(d, &numbers[i]); };
   auto apart = hn::FirstN(d, 0);
@@ -195,16 +203,12 @@ inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Tes
     apart = hn::Or(apart, hn::Gt(number(bounds.low[place]), hn::Set(d, tested.box.high[axis])));
     apart = hn::Or(apart, hn::Lt(number(bounds.high[place]), hn::Set(d, tested.box.low[axis])));
   }
-  std::array<V, 2> slab_low = {number(bounds.slab_low[0]), number(bounds.slab_low[1])};
-  std::array<V, 2> slab_high = {number(bounds.slab_high[0]), number(bounds.slab_high[1])};
-  if (tested.is_cut) {
+  if constexpr (kIsCut) {
     const auto three = [&](const std::array<MeshletTriangles::Numbers, 3>& numbers) -> Triple<D> {
       return {number(numbers[0]), number(numbers[1]), number(numbers[2])};
     };
     const BoxLanes<D> boxes = box_lanes(d, three(bounds.low), three(bounds.high));
     apart = hn::Or(apart, are_beside(d, boxes, everywhere(tested.axes)));
-    slab_low.fill(hn::Min(slab_low[0], slab_low[1]));
-    slab_high.fill(hn::Max(slab_high[0], slab_high[1]));
   }
   auto meets = hn::Not(apart);
   if (hn::AllFalse(d, meets)) return 0;
@@ -216,22 +220,35 @@ inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Tes
   if (segment.is_sphere()) margin = hn::Add(margin, reach_along(normal, segment));
   const V along_start = dot(normal, start);
   const V along_end = dot(normal, end);
+  V low_start = number(bounds.slab_low[0]);
+  V low_end = number(bounds.slab_low[1]);
+  V high_start = number(bounds.slab_high[0]);
+  V high_end = number(bounds.slab_high[1]);
+  if constexpr (kIsCut) {
+    low_start = low_end = hn::Min(low_start, low_end);
+    high_start = high_end = hn::Max(high_start, high_end);
+  }
   const auto above =
-      hn::And(hn::Gt(hn::Sub(along_start, margin), slab_high[0]), hn::Gt(hn::Sub(along_end, margin), slab_high[1]));
+      hn::And(hn::Gt(hn::Sub(along_start, margin), high_start), hn::Gt(hn::Sub(along_end, margin), high_end));
   const auto below =
-      hn::And(hn::Lt(hn::Add(along_start, margin), slab_low[0]), hn::Lt(hn::Add(along_end, margin), slab_low[1]));
+      hn::And(hn::Lt(hn::Add(along_start, margin), low_start), hn::Lt(hn::Add(along_end, margin), low_end));
   meets = hn::AndNot(hn::Or(above, below), meets);
   return mask_bits(d, meets);
+}
+
+template <typename Tested>
+inline std::uint32_t meet_all(const MeshletTriangles::Bounds& bounds, const Tested& tested) {
+  std::uint32_t meets = 0;
+  for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(D())) meets |= meet_some(bounds, tested, i) << i;
+  return meets;
 }
 
 void meet_triangles(const MeshletTriangles::Bounds& bounds, const Ways& ways, std::span<const std::uint32_t> numbers,
                     std::uint32_t* meets) {
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    meets[k] = 0;
     const Segment& segment = ways.segments[numbers[k]];
-    const bool is_cut = ways.is_cut(numbers[k]);
-    const Tested tested = {segment, box_of(segment), is_cut, is_cut ? cross_axes(segment) : CrossAxes()};
-    for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(D())) meets[k] |= meet_some(bounds, tested, i) << i;
+    meets[k] = ways.is_cut(numbers[k]) ? meet_all(bounds, CutSegment{segment, box_of(segment), cross_axes(segment)})
+                                       : meet_all(bounds, WholeSegment{segment, box_of(segment)});
   }
 }
 

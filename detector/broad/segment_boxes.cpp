@@ -47,13 +47,20 @@ void SegmentBoxes::test(std::span<const SkinBox> boxes) {
   }
 }
 
+template <std::size_t kCount>
+void SegmentBoxes::take(const SegmentBoxes& from, std::size_t i) {
+  for (std::size_t plane = 0; plane < kCount; ++plane)
+    ends_[plane * stride_ + count_] = from.ends_[plane * from.stride_ + i];
+  number_[count_++] = from.number_[i];
+}
+
 bool SegmentBoxes::take_met(const SegmentBoxes& from, std::size_t box) {
   count_ = 0;
-  from.visit_met(box, [&](std::size_t i) {
-    for (std::size_t plane = 0; plane < planes_; ++plane)
-      ends_[plane * stride_ + count_] = from.ends_[plane * from.stride_ + i];
-    number_[count_++] = from.number_[i];
-  });
+  if (planes_ == kPlanes) {
+    from.visit_met(box, [&](std::size_t i) { take<kPlanes>(from, i); });
+  } else {
+    from.visit_met(box, [&](std::size_t i) { take<kCutPlanes>(from, i); });
+  }
   return count_ > 0;
 }
 

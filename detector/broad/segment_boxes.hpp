@@ -52,6 +52,9 @@ class SegmentBoxes {
   static constexpr std::size_t kPlanes = 6;      ///< low x, y, z, high x, y, z
   static constexpr std::size_t kCutPlanes = 15;  ///< and the numbers of CrossAxes
 
+  template <std::size_t kCount>  // of planes
+  void take(const SegmentBoxes& from, std::size_t i);
+
   std::size_t count_ = 0;
   std::size_t stride_ = 0;
   std::size_t planes_ = kPlanes;

@@ -23,7 +23,8 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
   ways_ = cutter_.cut(frame);
   is_anew_ = !search_.find(frame, ways_, method_);
   if (is_anew_) {
-    find_anew(frame, clock);
+    anew_.find(frame, ways_, method_);
+    work_.meshlets_skinned = touched().size();
   } else {
     look_closer(frame, clock);
     search_.learn();
@@ -45,7 +46,6 @@ void CandidatePatches::take_all(const DetectorFrame& frame, StageClock* clock) {
     skin(frame, meshlet, meshlet);
   }
   count_pairs();
-  work_.meshlets_skinned = 0;
 }
 
 void CandidatePatches::count_work(const DetectorFrame& frame) {
@@ -63,10 +63,8 @@ void CandidatePatches::count_pairs() {
   }
 }
 
-void CandidatePatches::find_anew(const DetectorFrame& frame, StageClock* clock) {
-  anew_.find(frame, ways_, method_);
-  enter_stage(clock, Stage::kSkinning);
-  for (std::size_t i = 0; i < touched().size(); ++i) skin(frame, touched()[i].meshlet, i);
+void CandidatePatches::skin_touched(const DetectorFrame& frame, std::size_t i) {
+  if (is_anew_) skin(frame, touched()[i].meshlet, i);
 }
 
 void CandidatePatches::look_closer(const DetectorFrame& frame, StageClock* clock) {
@@ -82,6 +80,7 @@ void CandidatePatches::look_closer(const DetectorFrame& frame, StageClock* clock
     const std::size_t meshlet = pairs[i].meshlet;
     if (when_[meshlet].call != calls_) {
       skin(frame, meshlet, meshlet);
+      ++work_.meshlets_skinned;
       triangles_[meshlet].bound(now_[meshlet], method_ == Method::kStatic ? now_[meshlet] : before_[meshlet], method_);
       when_[meshlet] = {calls_, search_.restarts(), search_.clock(meshlet)};
     }
@@ -112,7 +111,6 @@ void CandidatePatches::bound_gaps(const DetectorFrame& frame) {
 void CandidatePatches::skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place) {
   meshlet_skin_.skin(meshlet, frame.palette, now_[place]);
   if (method_ != Method::kStatic) meshlet_skin_.skin(meshlet, frame.palette_before, before_[place]);
-  ++work_.meshlets_skinned;
 }
 
 void CandidatePatches::list_touched() {

@@ -43,6 +43,8 @@ class CandidatePatches {
   std::span<const std::uint32_t> segments(const TouchedMeshlet& touched) const {
     return is_anew_ ? anew_.segments(touched) : std::span(segments_).subspan(touched.first, touched.count);
   }
+  /// Skins the meshlet of touched()[i], unless the search did. Before `now`, `before` or `triangles` of it.
+  void skin_touched(const DetectorFrame& frame, std::size_t i);
   /// Where the meshlet of touched()[i] is, in this frame and in the one before. With kStatic both are the same.
   const MeshletCorners& now(std::size_t i) const { return now_[place_of(i)]; }
   const MeshletCorners& before(std::size_t i) const {
@@ -62,7 +64,6 @@ class CandidatePatches {
     std::int32_t clock = 0;     ///< of its part
   };
 
-  void find_anew(const DetectorFrame& frame, StageClock* clock);
   void look_closer(const DetectorFrame& frame, StageClock* clock);
   void bound_gaps(const DetectorFrame& frame);
   void skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place);

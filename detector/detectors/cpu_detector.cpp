@@ -90,6 +90,8 @@ class SkippingCpuDetector final : public Detector {
 
  private:
   void test(const DetectorFrame& frame, std::size_t number, ContactRow& row) {
+    enter(Stage::kSkinning);
+    candidates_.skin_touched(frame, number);
     enter(Stage::kTest);
     const TouchedMeshlet& touched = candidates_.touched()[number];
     const std::span<const std::uint32_t> numbers = candidates_.segments(touched);

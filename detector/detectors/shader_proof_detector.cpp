@@ -83,6 +83,7 @@ class ShaderProofDetector final : public Detector {
     // Otherwise the shader takes the ends' times for those of the frame.
     const std::span<const Segment> tested =
         method_ == Method::kStatic ? candidates_.ways().segments : std::span(frame.segments);
+    for (std::size_t i = 0; i < candidates_.touched().size(); ++i) candidates_.skin_touched(frame, i);
     prover_->begin(stage_clock());
     for (std::size_t i = 0; i < candidates_.touched().size(); ++i)
       prover_->add(candidates_.now(i), candidates_.before(i), tested, candidates_.segments(candidates_.touched()[i]));
