@@ -27,7 +27,7 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
     work_.meshlets_skinned = touched().size();
   } else {
     look_closer(frame, clock);
-    search_.learn();
+    search_.learn(work_.meshlets_skinned);
     list_touched();
   }
   count_work(frame);

@@ -50,8 +50,8 @@ class CoherentSearch {
   /// The pairs of the last `find`. Whoever knows a larger `gap_m` writes it there, before `learn`.
   std::span<NearPair> pairs() { return pairs_; }
 
-  /// Remembers how far the pairs are apart.
-  void learn();
+  /// Remembers how far the pairs are apart. `skinned` is the number of patches that had to be skinned for that.
+  void learn(std::uint64_t skinned);
 
   /// How far the skin of a meshlet can have moved since `then`, an earlier `clock` of it, in metres.
   float moved_m(std::size_t meshlet, std::int32_t then) const { return since(meshlet / meshlets_a_part_, then); }
@@ -74,6 +74,13 @@ class CoherentSearch {
     std::int32_t clock = -1;  ///< of its part, when the boxes were computed; -1: never
   };
 
+  /// What was paid since the last restart, and what would have been paid for looking at everything.
+  struct WarmCosts {
+    std::uint64_t frames = 0;
+    std::uint64_t cost = 0;
+    std::uint64_t cost_anew = 0;
+  };
+
   struct alignas(64) DistanceBlock {
     std::array<std::int32_t, kPartBlock> units = {};
   };
@@ -82,6 +89,7 @@ class CoherentSearch {
   bool begin(const DetectorFrame& frame, Method method);
   void look_below(std::size_t level);
   void restart(std::size_t columns);
+  void compare_costs(std::uint64_t skinned);
   void refresh(std::size_t level, std::size_t node, std::size_t part);
   float since(std::size_t part, std::int32_t then) const {
     return static_cast<float>(parts_.clock[part] - then) * (kGapUnit_m * kGapUp);
@@ -98,7 +106,10 @@ class CoherentSearch {
 
   std::uint64_t restarts_ = 0;
   std::uint64_t spared_ = 0;
-  bool is_fast_ = false;  ///< too much moved; until a frame number divisible by kTryAgain
+  std::size_t colliders_ = 0;  ///< in the last frame
+  bool is_fast_ = false;       ///< too much moved; until a frame number divisible by kTryAgain
+  bool is_dense_ = false;      ///< so much is near that remembering costs more than it saves; until kRestart
+  WarmCosts warm_;
   std::optional<std::uint64_t> last_index_;
   std::vector<SkinMatrix> palette_;  ///< of the last frame
   float pad_m_ = 0;
