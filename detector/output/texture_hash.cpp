@@ -6,22 +6,25 @@ namespace vestige {
 
 namespace {
 
+constexpr std::size_t kContactBytes = 10;
+
 template <typename Unsigned>
-void append_little_endian(std::string& out, Unsigned value) {
-  for (std::size_t byte = 0; byte < sizeof(Unsigned); ++byte)
-    out.push_back(static_cast<char>(static_cast<std::uint32_t>(value) >> (8 * byte)));
+std::byte* put_little_endian(std::byte* out, Unsigned value) {
+  for (std::size_t i = 0; i < sizeof(Unsigned); ++i) *out++ = static_cast<std::byte>(value >> (8 * i));
+  return out;
 }
 
 }  // namespace
 
 void TextureHash::add(const ContactRow& row) {
-  bytes_.clear();
+  bytes_.resize(kContactBytes * row.size());
+  std::byte* out = bytes_.data();
   for (const Contact& contact : row) {
-    append_little_endian(bytes_, contact.triangle);
-    append_little_endian(bytes_, std::bit_cast<std::uint32_t>(contact.t));
-    append_little_endian(bytes_, contact.actuator);
+    out = put_little_endian(out, contact.triangle);
+    out = put_little_endian(out, std::bit_cast<std::uint32_t>(contact.t));
+    out = put_little_endian(out, contact.actuator);
   }
-  sha_.update(std::as_bytes(std::span(bytes_)));
+  sha_.update(bytes_);
 }
 
 std::string texture_hash_of(std::span<const std::string> people) {

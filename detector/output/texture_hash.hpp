@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "detector/contact.hpp"
 #include "traces/base/sha256.hpp"
@@ -18,7 +20,7 @@ class TextureHash {
 
  private:
   Sha256 sha_;
-  std::string bytes_;
+  std::vector<std::byte> bytes_;  ///< of one row
 };
 
 /// Returns the hash of a run with the hashes of its people, in their order: of one person the same, of several SHA-256
