@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 
 #include "traces/scene/avatar.hpp"
@@ -108,6 +109,29 @@ glm::dmat4 local_matrix(const NodeLocal& local) {
           glm::dvec4(rotation[2] * scale.z, 0), glm::dvec4(glm::dvec3(local.translation), 1)};
 }
 
+using Pair [[gnu::vector_size(16)]] = double;
+
+Pair pair_of(const glm::dvec4& column, int first) {
+  Pair pair;
+  std::memcpy(&pair, &column[first], sizeof(pair));
+  return pair;
+}
+
+/// Computes a * b as glm does, to the last bit, two rows at once.
+void multiply(const glm::dmat4& a, const glm::dmat4& b, glm::dmat4& out) {
+  for (int row = 0; row < 4; row += 2) {
+    const Pair x = pair_of(a[0], row);
+    const Pair y = pair_of(a[1], row);
+    const Pair z = pair_of(a[2], row);
+    const Pair w = pair_of(a[3], row);
+    for (int column = 0; column < 4; ++column) {
+      const glm::dvec4& by = b[column];
+      const Pair sum = x * by.x + y * by.y + z * by.z + w * by.w;
+      std::memcpy(&out[column][row], &sum, sizeof(sum));
+    }
+  }
+}
+
 }  // namespace
 
 Pose rest_pose(const Avatar& avatar) {
@@ -148,7 +172,11 @@ void world_matrices(const Avatar& avatar, const Pose& pose, std::vector<glm::dma
     const auto i = static_cast<std::size_t>(index);
     const Node& node = avatar.nodes[i];
     const glm::dmat4 local = node.fixed_matrix ? *node.fixed_matrix : local_matrix(pose.nodes[i]);
-    out[i] = node.parent < 0 ? local : out[static_cast<std::size_t>(node.parent)] * local;
+    if (node.parent < 0) {
+      out[i] = local;
+    } else {
+      multiply(out[static_cast<std::size_t>(node.parent)], local, out[i]);
+    }
   }
 }
 
