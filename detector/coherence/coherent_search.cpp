@@ -17,15 +17,18 @@ namespace {
 constexpr float kFast_m = 0.005F;
 /// Then frames are searched anew until a number divisible by this.
 constexpr std::uint64_t kTryAgain = 64;
-/// A search that remembers pays for each patch that has to be skinned and each pair that is near; one that begins anew
-/// pays for each collider and patch. In tens of nanoseconds, measured with the built-in avatar on an AMD EPYC.
-constexpr std::uint64_t kSkinnedCost = 35;
-constexpr std::uint64_t kNearCost = 6;
-constexpr std::uint64_t kColliderCost = 7;
-constexpr std::uint64_t kTouchedCost = 10;
-constexpr std::uint64_t kAnewCost = 600;
-/// Patches that a collider at the skin touches, at most.
-constexpr std::uint64_t kTouchedByCollider = 2;
+/// What a search that remembers pays for each collider, each one that is due, each pair that is near, and each patch
+/// that has to be skinned. In nanoseconds, measured with the built-in avatar on an AMD EPYC, as below.
+constexpr std::uint64_t kFollowedCost = 8;
+constexpr std::uint64_t kDueCost = 130;
+constexpr std::uint64_t kNearCost = 60;
+constexpr std::uint64_t kSkinnedCost = 350;
+/// What one that begins anew pays at all, and for each collider, each pair that the boxes cannot tell apart, and each
+/// patch that has such pairs.
+constexpr std::uint64_t kAnewCost = 6000;
+constexpr std::uint64_t kColliderCost = 12;
+constexpr std::uint64_t kMeetingCost = 38;
+constexpr std::uint64_t kTouchedCost = 100;
 /// Frames after a restart over which both are compared.
 constexpr std::uint64_t kWarmFrames = 8;
 
@@ -134,6 +137,7 @@ bool CoherentSearch::begin(const DetectorFrame& frame, Method method) {
 bool CoherentSearch::find(const DetectorFrame& frame, const Ways& ways, Method method) {
   pairs_.clear();
   roots_.clear();
+  boxes_meeting_ = 0;
   if (meshlets_.levels() == 0) return true;
   if (!begin(frame, method)) return false;
   queries_.resize(due_.size());
@@ -184,6 +188,7 @@ void CoherentSearch::look_below(std::size_t level) {
     out.meshlet = child.child;
     out.segment = due_[pair.due].segment;
     out.may_meet = child.may_meet;
+    boxes_meeting_ += child.may_meet ? 1U : 0U;
     out.gap_m = child.gap_m;
     out.spent_m = near_m_[child.pair] / kNearFrames * kGapUp;
     out.root = pair.root;
@@ -204,10 +209,14 @@ void CoherentSearch::learn(std::uint64_t skinned) {
 }
 
 void CoherentSearch::compare_costs(std::uint64_t skinned) {
-  if (warm_.frames++ == 0) return;  // knew nothing
-  const std::uint64_t touched = std::min<std::uint64_t>(meshlets_.size(), kTouchedByCollider * colliders_);
-  warm_.cost += kSkinnedCost * skinned + kNearCost * pairs_.size();
-  warm_.cost_anew += kAnewCost + kColliderCost * colliders_ + kTouchedCost * touched;
+  if (warm_.frames++ == 0) {  // it knew nothing, and looked at all that one that begins anew looks at
+    const std::uint64_t touched = std::min<std::uint64_t>(meshlets_.size(), boxes_meeting_);
+    warm_.meeting_cost = kMeetingCost * boxes_meeting_ + kTouchedCost * touched;
+    return;
+  }
+  warm_.cost +=
+      kFollowedCost * colliders_ + kDueCost * due_.size() + kNearCost * pairs_.size() + kSkinnedCost * skinned;
+  warm_.cost_anew += kAnewCost + kColliderCost * colliders_ + warm_.meeting_cost;
   is_dense_ = warm_.frames > kWarmFrames && warm_.cost > warm_.cost_anew;
 }
 

@@ -79,6 +79,7 @@ class CoherentSearch {
     std::uint64_t frames = 0;
     std::uint64_t cost = 0;
     std::uint64_t cost_anew = 0;
+    std::uint64_t meeting_cost = 0;  ///< part of the latter that pairs cause, in each frame
   };
 
   struct alignas(64) DistanceBlock {
@@ -106,9 +107,10 @@ class CoherentSearch {
 
   std::uint64_t restarts_ = 0;
   std::uint64_t spared_ = 0;
-  std::size_t colliders_ = 0;  ///< in the last frame
-  bool is_fast_ = false;       ///< too much moved; until a frame number divisible by kTryAgain
-  bool is_dense_ = false;      ///< so much is near that remembering costs more than it saves; until kRestart
+  std::size_t colliders_ = 0;        ///< in the last frame
+  std::uint64_t boxes_meeting_ = 0;  ///< pairs of meshlet and segment that the boxes could not tell apart, likewise
+  bool is_fast_ = false;             ///< too much moved; until a frame number divisible by kTryAgain
+  bool is_dense_ = false;            ///< so much is near that remembering costs more than it saves; until kRestart
   WarmCosts warm_;
   std::optional<std::uint64_t> last_index_;
   std::vector<SkinMatrix> palette_;  ///< of the last frame
