@@ -115,15 +115,15 @@ glm::vec4 prepare(std::span<const SkinMatrix> palette, const std::vector<RestBox
     for (std::size_t column = 0; column < 3; ++column) out[i].magnitude[column] = glm::abs(palette[i].column[column]);
   }
   glm::vec4 reach(0);
+  glm::vec4 sum(0);
   for (const RestBox& extent : extents) {
     const BoundTransform& t = out[extent.entry];
     const glm::vec4 of_entry = t.magnitude[0] * extent.half_extent.x + t.magnitude[1] * extent.half_extent.y +
                                t.magnitude[2] * extent.half_extent.z + glm::abs(t.column[3]);
-    for (int axis = 0; axis < 3; ++axis)
-      // Once `reach` is NaN, it stays NaN: then no comparison with it is true.
-      if (of_entry[axis] > reach[axis] || std::isnan(of_entry[axis])) reach[axis] = of_entry[axis];
+    reach = glm::max(reach, of_entry);
+    sum += of_entry;
   }
-  return reach;
+  return reach + (sum - sum);  // not a number if one of them is not finite
 }
 
 bool within_reach(const glm::vec4& reach) {
