@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,14 @@ class Detector {
   /// Fills `row` (resized to frame.columns). This call contains the whole round trip: skinning or upload, test,
   /// read-back.
   virtual DetectorWork detect(const DetectorFrame& frame, ContactRow& row) = 0;
+
+  /// Does what `detect` does for each frame, in their order, with the same rows and the same work. A detector whose GPU
+  /// works beside the CPU has several frames in flight meanwhile. All three have the same size. If it throws, the rows
+  /// and the work say nothing.
+  virtual void detect_all(std::span<const DetectorFrame> frames, std::span<ContactRow> rows,
+                          std::span<DetectorWork> work) {
+    for (std::size_t i = 0; i < frames.size(); ++i) work[i] = detect(frames[i], rows[i]);
+  }
 
   /// Writes this detector's own skinned vertices to `out`, relative to the frame's origin, for comparison with the
   /// double-precision reference.

@@ -35,6 +35,8 @@ class MeshletCandidates {
   /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
   std::span<const TouchedMeshlet> touched() const { return touched_; }
 
+  /// Those of all touched meshlets, one after another.
+  std::span<const std::uint32_t> segments() const { return segments_; }
   /// Numbers in DetectorFrame::segments, ascending.
   std::span<const std::uint32_t> segments(const TouchedMeshlet& touched) const {
     return std::span(segments_).subspan(touched.first, touched.count);

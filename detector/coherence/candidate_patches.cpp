@@ -12,18 +12,18 @@ CandidatePatches::CandidatePatches(const Avatar& avatar, const Meshlets& meshlet
       anew_(avatar, meshlets),
       search_(avatar, meshlets),
       when_(meshlets.size()),
-      now_(meshlets.size()),
-      before_(method == Method::kStatic ? 0 : meshlets.size()),
       triangles_(meshlets.size()) {}
 
 void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
   enter_stage(clock, Stage::kCandidates);
   ++calls_;
-  work_ = DetectorWork();
+  begin();
   ways_ = cutter_.cut(frame);
   is_anew_ = !search_.find(frame, ways_, method_);
   if (is_anew_) {
     anew_.find(frame, ways_, method_);
+    found_.touched.assign(anew_.touched().begin(), anew_.touched().end());
+    found_.numbers.assign(anew_.segments().begin(), anew_.segments().end());
     work_.meshlets_skinned = touched().size();
   } else {
     look_closer(frame, clock);
@@ -34,18 +34,23 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
 }
 
 void CandidatePatches::take_all(const DetectorFrame& frame, StageClock* clock) {
-  enter_stage(clock, Stage::kSkinning);
+  enter_stage(clock, Stage::kCandidates);
   ways_ = {frame.segments, {}};
   is_anew_ = false;
-  work_ = DetectorWork();
-  touched_.clear();
-  segments_.resize(frame.segments.size());
-  std::iota(segments_.begin(), segments_.end(), 0U);
-  for (std::uint32_t meshlet = 0; meshlet < meshlets_.size(); ++meshlet) {
-    touched_.push_back({meshlet, 0, static_cast<std::uint32_t>(segments_.size())});
-    skin(frame, meshlet, meshlet);
-  }
+  begin();
+  found_.numbers.resize(frame.segments.size());
+  std::iota(found_.numbers.begin(), found_.numbers.end(), 0U);
+  for (std::uint32_t meshlet = 0; meshlet < meshlets_.size(); ++meshlet)
+    found_.touched.push_back({meshlet, 0, static_cast<std::uint32_t>(found_.numbers.size())});
   count_pairs();
+}
+
+void CandidatePatches::begin() {
+  work_ = DetectorWork();
+  found_.touched.clear();
+  found_.numbers.clear();
+  found_.places.clear();
+  skinned_ = 0;
 }
 
 void CandidatePatches::count_work(const DetectorFrame& frame) {
@@ -64,7 +69,7 @@ void CandidatePatches::count_pairs() {
 }
 
 void CandidatePatches::skin_touched(const DetectorFrame& frame, std::size_t i) {
-  if (is_anew_) skin(frame, touched()[i].meshlet, i);
+  if (i == found_.places.size()) found_.places.push_back(skin(frame, touched()[i].meshlet));
 }
 
 void CandidatePatches::look_closer(const DetectorFrame& frame, StageClock* clock) {
@@ -79,10 +84,11 @@ void CandidatePatches::look_closer(const DetectorFrame& frame, StageClock* clock
     if (!pairs[i].may_meet) continue;
     const std::size_t meshlet = pairs[i].meshlet;
     if (when_[meshlet].call != calls_) {
-      skin(frame, meshlet, meshlet);
+      const std::uint32_t place = skin(frame, meshlet);
+      const MeshletCorners& now = found_.now[place];
+      triangles_[meshlet].bound(now, method_ == Method::kStatic ? now : found_.before[place], method_);
       ++work_.meshlets_skinned;
-      triangles_[meshlet].bound(now_[meshlet], method_ == Method::kStatic ? now_[meshlet] : before_[meshlet], method_);
-      when_[meshlet] = {calls_, search_.restarts(), search_.clock(meshlet)};
+      when_[meshlet] = {calls_, search_.restarts(), search_.clock(meshlet), place};
     }
     ask_.push_back(i);
   }
@@ -108,29 +114,36 @@ void CandidatePatches::bound_gaps(const DetectorFrame& frame) {
   }
 }
 
-void CandidatePatches::skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place) {
-  meshlet_skin_.skin(meshlet, frame.palette, now_[place]);
-  if (method_ != Method::kStatic) meshlet_skin_.skin(meshlet, frame.palette_before, before_[place]);
+/// Returns the place of the meshlet's corners.
+std::uint32_t CandidatePatches::skin(const DetectorFrame& frame, std::size_t meshlet) {
+  const std::uint32_t place = skinned_++;
+  if (place == found_.now.size()) {
+    found_.now.emplace_back();
+    if (method_ != Method::kStatic) found_.before.emplace_back();
+  }
+  meshlet_skin_.skin(meshlet, frame.palette, found_.now[place]);
+  if (method_ != Method::kStatic) meshlet_skin_.skin(meshlet, frame.palette_before, found_.before[place]);
+  return place;
 }
 
 void CandidatePatches::list_touched() {
-  touched_.clear();
-  segments_.clear();
   order_.clear();
   for (const NearPair& pair : search_.pairs())
     if (pair.may_meet) order_.push_back(std::uint64_t{pair.meshlet} << 32U | pair.segment);
   std::ranges::sort(order_);
   for (const std::uint64_t pair : order_) {
     const auto meshlet = static_cast<std::uint32_t>(pair >> 32U);
-    if (touched_.empty() || touched_.back().meshlet != meshlet)
-      touched_.push_back({meshlet, static_cast<std::uint32_t>(segments_.size()), 0});
-    ++touched_.back().count;
-    segments_.push_back(static_cast<std::uint32_t>(pair));
+    if (found_.touched.empty() || found_.touched.back().meshlet != meshlet) {
+      found_.touched.push_back({meshlet, static_cast<std::uint32_t>(found_.numbers.size()), 0});
+      found_.places.push_back(when_[meshlet].place);
+    }
+    ++found_.touched.back().count;
+    found_.numbers.push_back(static_cast<std::uint32_t>(pair));
   }
 }
 
 const MeshletTriangles& CandidatePatches::triangles(std::size_t i) {
-  if (!is_anew_) return triangles_[touched_[i].meshlet];
+  if (!is_anew_) return triangles_[touched()[i].meshlet];
   bounded_.bound(now(i), before(i), method_);
   return bounded_;
 }

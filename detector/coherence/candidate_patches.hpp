@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "detector/broad/meshlet_candidates.hpp"
@@ -10,6 +11,7 @@
 #include "detector/broad/meshlet_triangles.hpp"
 #include "detector/broad/meshlets.hpp"
 #include "detector/coherence/coherent_search.hpp"
+#include "detector/coherence/found_patches.hpp"
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
@@ -38,23 +40,22 @@ class CandidatePatches {
   /// What was tested in place of the frame's segments. Valid while the frame is.
   const Ways& ways() const { return ways_; }
   /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
-  std::span<const TouchedMeshlet> touched() const { return is_anew_ ? anew_.touched() : touched_; }
+  std::span<const TouchedMeshlet> touched() const { return found_.touched; }
   /// Numbers in DetectorFrame::segments, ascending.
-  std::span<const std::uint32_t> segments(const TouchedMeshlet& touched) const {
-    return is_anew_ ? anew_.segments(touched) : std::span(segments_).subspan(touched.first, touched.count);
-  }
-  /// Skins the meshlet of touched()[i], unless the search did. Before `now`, `before` or `triangles` of it.
+  std::span<const std::uint32_t> segments(const TouchedMeshlet& touched) const { return found_.segments(touched); }
+  /// Skins the meshlet of touched()[i], unless the search did. Before `now`, `before` or `triangles` of it, in order.
   void skin_touched(const DetectorFrame& frame, std::size_t i);
   /// Where the meshlet of touched()[i] is, in this frame and in the one before. With kStatic both are the same.
-  const MeshletCorners& now(std::size_t i) const { return now_[place_of(i)]; }
-  const MeshletCorners& before(std::size_t i) const {
-    return method_ == Method::kStatic ? now(i) : before_[place_of(i)];
-  }
+  const MeshletCorners& now(std::size_t i) const { return found_.now_of(i); }
+  const MeshletCorners& before(std::size_t i) const { return found_.before_of(i); }
   /// Bounds of its triangles, valid until the next call.
   const MeshletTriangles& triangles(std::size_t i);
 
   /// The work of the last `find`, and that of testing what it found.
   const DetectorWork& work() const { return work_; }
+
+  /// Gives away what the last `find` found, for as long as the caller keeps it, and takes memory for the next `find`.
+  void swap_found(FoundPatches& found) { std::swap(found_, found); }
 
  private:
   /// When a meshlet was skinned last.
@@ -62,15 +63,16 @@ class CandidatePatches {
     std::uint64_t call = 0;     ///< from 1 on
     std::uint64_t restart = 0;  ///< of the search: earlier ones say nothing
     std::int32_t clock = 0;     ///< of its part
+    std::uint32_t place = 0;    ///< of its corners
   };
 
+  void begin();
   void look_closer(const DetectorFrame& frame, StageClock* clock);
   void bound_gaps(const DetectorFrame& frame);
-  void skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place);
+  std::uint32_t skin(const DetectorFrame& frame, std::size_t meshlet);
   void list_touched();
   void count_work(const DetectorFrame& frame);
   void count_pairs();
-  std::size_t place_of(std::size_t i) const { return is_anew_ ? i : touched_[i].meshlet; }
 
   const Meshlets& meshlets_;
   Method method_;
@@ -79,20 +81,18 @@ class CandidatePatches {
   CoherentSearch search_;
   WayCutter cutter_;
   Ways ways_;
-  bool is_anew_ = false;  ///< the last `find`; then patches are by their number in touched_, else by meshlet
+  bool is_anew_ = false;  ///< the last `find`
 
   std::uint64_t calls_ = 0;
   DetectorWork work_;
+  FoundPatches found_;
+  std::uint32_t skinned_ = 0;  ///< places of `found_` that are taken
   std::vector<SkinnedWhen> when_;
-  std::vector<MeshletCorners> now_;
-  std::vector<MeshletCorners> before_;
   std::vector<MeshletTriangles> triangles_;
   MeshletTriangles bounded_;        ///< if anew
   std::vector<std::uint32_t> ask_;  ///< numbers of the search's pairs
   std::vector<TriangleGap> gaps_;
-  std::vector<std::uint64_t> order_;     ///< of the pairs: meshlet, then segment
-  std::vector<TouchedMeshlet> touched_;  ///< unless anew
-  std::vector<std::uint32_t> segments_;  ///< likewise
+  std::vector<std::uint64_t> order_;  ///< of the pairs: meshlet, then segment
 };
 
 }  // namespace vestige

@@ -59,6 +59,48 @@ struct CandidateProver::Block {
   std::array<GpuSegment, kBlockSegments> segments;
 };
 
+struct CandidateProver::Place {
+  /// The number of things in a block: the input of one draw or dispatch.
+  struct Filled {
+    std::size_t slots = 0;
+    std::size_t segments = 0;
+  };
+
+  Place(const GlFunctions& functions, std::size_t corners_bytes)
+      : gl(functions), corners(gl, corners_bytes), blocks(gl, kMostBlocks * sizeof(Block)), words(gl, kWordsBytes) {
+    gl.CreateTextures(GL_TEXTURE_BUFFER, 1, &corner_texture);
+    gl.TextureBuffer(corner_texture, GL_RGBA32F, corners.name());
+  }
+  ~Place() {
+    gl.DeleteSync(fence);
+    gl.DeleteTextures(1, &corner_texture);
+  }
+  Place(const Place&) = delete;
+  Place& operator=(const Place&) = delete;
+
+  void forget() {
+    filled.clear();
+    slot_segments.clear();
+    meshlets = 0;
+    has_spheres = false;
+  }
+  void read_words();
+
+  static constexpr std::size_t kWordsBytes = kMostBlocks * kBlockSlots * kSlotLanes * sizeof(std::uint32_t);
+
+  const GlFunctions& gl;
+  GlMappedBuffer corners;
+  GlMappedBuffer blocks;
+  GlMappedBuffer words;
+  GLuint corner_texture = 0;
+  GLsync fence = nullptr;  ///< null if the GPU has nothing of this place
+  bool has_spheres = false;
+  std::size_t meshlets = 0;
+  std::vector<Filled> filled;  ///< the blocks
+  std::vector<std::size_t> slot_segments;
+  std::vector<std::uint32_t> bits;  ///< what `finish` returns
+};
+
 void unpack_words(std::span<const std::uint32_t, kSlotLanes> words, std::size_t segments, std::uint32_t* out) {
   std::uint32_t any = 0;
   std::uint32_t all = 0xFFFFFFFF;
@@ -82,32 +124,26 @@ CandidateProver::CandidateProver(const GlContext& context, const ProverOptions& 
       options_(options),
       waits_actively_(!context.info().software),
       most_meshlets_(most_meshlets(gl_, options.method)),
-      corners_(gl_, most_meshlets_ * sets_of(options.method) * sizeof(MeshletCorners)),
-      blocks_(gl_, kMostBlocks * sizeof(Block)),
-      words_(gl_, kMostBlocks * kBlockSlots * kSlotLanes * sizeof(std::uint32_t)),
       nowhere_(gl_, PlaneSet()),
       timer_(gl_) {
   static_assert(sizeof(Block) == 16384);  // the size that every driver allows for a uniform block
-  gl_.CreateTextures(GL_TEXTURE_BUFFER, 1, &corner_texture_);
-  gl_.TextureBuffer(corner_texture_, GL_RGBA32F, corners_.name());
   gl_.CreateVertexArrays(1, &vertex_array_);
   nowhere_.begin(1);
-  program();
+  program(false);
   check_gl(gl_, "preparing the candidates' shaders");
 }
 
 CandidateProver::~CandidateProver() {
   gl_.DeleteVertexArrays(1, &vertex_array_);
-  gl_.DeleteTextures(1, &corner_texture_);
 }
 
-const GlProgram& CandidateProver::program() {
-  std::optional<GlProgram>& program = programs_[has_spheres_ ? 1 : 0];
+const GlProgram& CandidateProver::program(bool has_spheres) {
+  std::optional<GlProgram>& program = programs_[has_spheres ? 1 : 0];
   if (program) return *program;
   const std::string head = fmt::format(
       "#version 450 core\n{}#define METHOD {}\n#define SPHERES {}\n#define BLOCK_SLOTS {}\n#define BLOCK_SEGMENTS {}\n"
       "#define LANES {}u\n#define SLOT_SEGMENTS {}u\n#define GROUP_THREADS {}u\n",
-      shaders::kConstantsH, static_cast<int>(options_.method), has_spheres_ ? 1 : 0, kBlockSlots, kBlockSegments,
+      shaders::kConstantsH, static_cast<int>(options_.method), has_spheres ? 1 : 0, kBlockSlots, kBlockSegments,
       kSlotLanes, kSlotSegments, options_.as_on_gpu ? kGpuGroupThreads : kSlotLanes);
   const std::string proofs(shaders::kCandidatesGlsl);
   if (options_.stage == ProofStage::kCompute) {
@@ -123,36 +159,41 @@ const GlProgram& CandidateProver::program() {
   return *program;
 }
 
-void CandidateProver::begin(StageClock* clock) {
+void CandidateProver::begin(std::size_t place, StageClock* clock) {
   clock_ = clock;
   enter_stage(clock_, Stage::kUpload);
-  gl_.BindTextureUnit(VESTIGE_TEXTURE_CORNERS, corner_texture_);
-  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, words_.name());
+  std::unique_ptr<Place>& here = places_[place];
+  if (here == nullptr)
+    here = std::make_unique<Place>(gl_, most_meshlets_ * sets_of(options_.method) * sizeof(MeshletCorners));
+  filling_ = here.get();
+  gl_.BindTextureUnit(VESTIGE_TEXTURE_CORNERS, here->corner_texture);
+  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, here->words.name());
   if (options_.stage == ProofStage::kGeometry) {
     gl_.BindVertexArray(vertex_array_);
     nowhere_.bind();  // a draw without any framebuffer fails in a surfaceless context
     gl_.Enable(GL_RASTERIZER_DISCARD);
   }
-  forget();
-  bits_.clear();
+  here->bits.clear();
 }
 
 void CandidateProver::add(const MeshletCorners& now, const MeshletCorners& before, std::span<const Segment> segments,
                           std::span<const std::uint32_t> numbers) {
+  Place& place = *filling_;
   while (!numbers.empty()) {
-    if (meshlets_ == most_meshlets_) prove();
-    auto* corners = reinterpret_cast<MeshletCorners*>(corners_.data()) + meshlets_ * sets_of(options_.method);
+    if (place.meshlets == most_meshlets_) prove();
+    auto* corners = reinterpret_cast<MeshletCorners*>(place.corners.data()) + place.meshlets * sets_of(options_.method);
     *corners = now;
     if (options_.method != Method::kStatic) corners[1] = before;
-    ++meshlets_;
+    ++place.meshlets;
     while (!numbers.empty()) {
       const std::size_t count = std::min(numbers.size(), kSlotSegments);
-      if (filled_.empty() || filled_.back().slots == kBlockSlots || filled_.back().segments + count > kBlockSegments) {
-        if (filled_.size() == kMostBlocks) {
+      const auto& filled = place.filled;
+      if (filled.empty() || filled.back().slots == kBlockSlots || filled.back().segments + count > kBlockSegments) {
+        if (filled.size() == kMostBlocks) {
           prove();
           break;  // whose corners are gone
         }
-        filled_.emplace_back();
+        place.filled.emplace_back();
       }
       add_slot(segments, numbers.first(count));
       numbers = numbers.subspan(count);
@@ -161,49 +202,62 @@ void CandidateProver::add(const MeshletCorners& now, const MeshletCorners& befor
 }
 
 void CandidateProver::add_slot(std::span<const Segment> segments, std::span<const std::uint32_t> numbers) {
-  Filled& filled = filled_.back();
-  Block& block = reinterpret_cast<Block*>(blocks_.data())[filled_.size() - 1];
-  slot_segments_.push_back(numbers.size());
+  Place& place = *filling_;
+  Place::Filled& filled = place.filled.back();
+  Block& block = reinterpret_cast<Block*>(place.blocks.data())[place.filled.size() - 1];
+  place.slot_segments.push_back(numbers.size());
   block.slots[filled.slots++] = {.first = static_cast<std::uint32_t>(filled.segments),
                                  .count = static_cast<std::uint32_t>(numbers.size()),
-                                 .place = static_cast<std::uint32_t>(meshlets_ - 1)};
+                                 .place = static_cast<std::uint32_t>(place.meshlets - 1)};
   for (const std::uint32_t number : numbers) {
     const Segment& segment = segments[number];
-    has_spheres_ = has_spheres_ || segment.is_sphere();
+    place.has_spheres = place.has_spheres || segment.is_sphere();
     block.segments[filled.segments++] = {glm::vec4(segment.start, bounding_radius_m(segment)),
                                          glm::vec4(segment.end, 0)};
   }
 }
 
-std::span<const std::uint32_t> CandidateProver::finish() {
-  prove();
-  return bits_;
+void CandidateProver::start() {
+  Place& place = *filling_;
+  if (place.filled.empty()) return;
+  const GlProgram& shader = program(place.has_spheres);
+  gl_.UseProgram(shader.name());
+  timer_.time(clock_, [&] {
+    for (std::size_t i = 0; i < place.filled.size(); ++i) start_block(shader, i);
+  });
+  enter_stage(clock_, Stage::kReadBack);
+  gl_.MemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+  place.fence = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  gl_.ClientWaitSync(place.fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0);  // so that the GPU begins at once
 }
 
 void CandidateProver::prove() {
-  if (filled_.empty()) return;
-  const GlProgram& shader = program();
-  gl_.UseProgram(shader.name());
-  timer_.time(clock_, [&] {
-    for (std::size_t i = 0; i < filled_.size(); ++i) start_block(shader, i);
-  });
-  enter_stage(clock_, Stage::kReadBack);
-  wait();
-  read_words();
-  forget();
+  start();
+  wait(*filling_);
   enter_stage(clock_, Stage::kUpload);
 }
 
-void CandidateProver::forget() {
-  filled_.clear();
-  slot_segments_.clear();
-  meshlets_ = 0;
-  has_spheres_ = false;
+std::span<const std::uint32_t> CandidateProver::finish(std::size_t place) {
+  enter_stage(clock_, Stage::kReadBack);
+  wait(*places_[place]);
+  return places_[place]->bits;
+}
+
+void CandidateProver::abandon() {
+  for (const std::unique_ptr<Place>& place : places_) {
+    if (place == nullptr) continue;
+    if (place->fence != nullptr) {
+      gl_.Finish();
+      gl_.DeleteSync(std::exchange(place->fence, nullptr));
+    }
+    std::memset(place->words.data(), 0, Place::kWordsBytes);
+    place->forget();
+  }
 }
 
 void CandidateProver::start_block(const GlProgram& shader, std::size_t number) {
-  const auto slots = static_cast<GLuint>(filled_[number].slots);
-  gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_CANDIDATES, blocks_.name(),
+  const auto slots = static_cast<GLuint>(filling_->filled[number].slots);
+  gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_CANDIDATES, filling_->blocks.name(),
                       static_cast<GLintptr>(number * sizeof(Block)), static_cast<GLsizeiptr>(sizeof(Block)));
   gl_.ProgramUniform1ui(shader.name(), VESTIGE_UNIFORM_FIRST_SLOT, static_cast<GLuint>(number * kBlockSlots));
   if (options_.stage == ProofStage::kGeometry) {
@@ -215,34 +269,32 @@ void CandidateProver::start_block(const GlProgram& shader, std::size_t number) {
   gl_.DispatchCompute(options_.as_on_gpu ? (slots + kGroupSlots - 1) / kGroupSlots : 1, 1, 1);
 }
 
-void CandidateProver::wait() {
+/// Waits for what the GPU has of a place, and takes its bits.
+void CandidateProver::wait(Place& place) {
+  if (place.fence == nullptr) return;
   constexpr GLuint64 kSecond_ns = 1000000000;
-  gl_.MemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
-  const GLsync fence = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   GLenum state = GL_TIMEOUT_EXPIRED;
-  while (state == GL_TIMEOUT_EXPIRED)
-    state = gl_.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, waits_actively_ ? 0 : kSecond_ns);
-  gl_.DeleteSync(fence);
+  while (state == GL_TIMEOUT_EXPIRED) state = gl_.ClientWaitSync(place.fence, 0, waits_actively_ ? 0 : kSecond_ns);
+  gl_.DeleteSync(std::exchange(place.fence, nullptr));
   check_gl(gl_, "proving candidates");
   if (state == GL_WAIT_FAILED)
     throw Error("OpenGL", "the driver cannot wait for its own work", "try another --context");
+  place.read_words();
+  place.forget();
 }
 
 /// Clears each word that it reads, so that a lane that does not write it is noticed.
-void CandidateProver::read_words() try {
-  auto* words = reinterpret_cast<std::array<std::uint32_t, kSlotLanes>*>(words_.data());
-  auto segments = slot_segments_.begin();
-  for (const Filled& block : filled_) {
+void CandidateProver::Place::read_words() {
+  auto* read_from = reinterpret_cast<std::array<std::uint32_t, kSlotLanes>*>(words.data());
+  auto segments = slot_segments.begin();
+  for (const Filled& block : filled) {
     for (std::size_t slot = 0; slot < block.slots; ++slot, ++segments) {
-      const std::array<std::uint32_t, kSlotLanes> read = std::exchange(words[slot], {});
-      bits_.resize(bits_.size() + *segments);
-      unpack_words(read, *segments, bits_.data() + bits_.size() - *segments);
+      const std::array<std::uint32_t, kSlotLanes> read = std::exchange(read_from[slot], {});
+      bits.resize(bits.size() + *segments);
+      unpack_words(read, *segments, bits.data() + bits.size() - *segments);
     }
-    words += kBlockSlots;
+    read_from += kBlockSlots;
   }
-} catch (const Error&) {
-  std::memset(words_.data(), 0, kMostBlocks * kBlockSlots * kSlotLanes * sizeof(std::uint32_t));
-  throw;
 }
 
 }  // namespace vestige

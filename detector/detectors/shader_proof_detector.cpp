@@ -1,5 +1,6 @@
 #include "detector/detectors/shader_proof_detector.hpp"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +11,9 @@
 
 #include "detector/broad/meshlets.hpp"
 #include "detector/coherence/candidate_patches.hpp"
+#include "detector/coherence/found_patches.hpp"
 #include "detector/detectors/contact_finder.hpp"
+#include "detector/detectors/in_flight.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/skinning.hpp"
 #include "traces/base/error.hpp"
@@ -59,17 +62,26 @@ class ShaderProofDetector final : public Detector {
   GlInfo gl_info() const override { return context_->info(); }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.clear(frame.columns);
-    if (frame.segments.empty()) return {.frames_skipped = frame.out_of_reach > 0 ? 1U : 0U};
-    if (skip_ == Skip::kOn)
-      candidates_.find(frame, stage_clock());
-    else
-      candidates_.take_all(frame, stage_clock());
-    DetectorWork work = candidates_.work();
-    if (candidates_.touched().empty()) return work;
-    work.pairs_captured = offer(frame, prove(frame), row);
-    finder_.finish(frame, row, work);
+    DetectorWork work;
+    detect_all({&frame, 1}, {&row, 1}, {&work, 1});
     return work;
+  }
+
+  void detect_all(std::span<const DetectorFrame> frames, std::span<ContactRow> rows,
+                  std::span<DetectorWork> work) override try {
+    keep_in_flight(
+        frames.size(),
+        [&](std::size_t i, std::size_t place) {
+          Flight& flight = flights_[place];
+          flight.frame = &frames[i];
+          flight.row = &rows[i];
+          flight.work = &work[i];
+          return start(place);
+        },
+        [&](std::size_t place) { finish(place); });
+  } catch (...) {
+    prover_->abandon();
+    throw;
   }
 
   /// Returns the vertices that the detector works with, which the CPU skins.
@@ -78,32 +90,68 @@ class ShaderProofDetector final : public Detector {
   }
 
  private:
-  std::span<const std::uint32_t> prove(const DetectorFrame& frame) {
+  /// A frame whose misses are being proven, and where its results go.
+  struct Flight {
+    const DetectorFrame* frame = nullptr;
+    ContactRow* row = nullptr;
+    DetectorWork* work = nullptr;
+    FoundPatches found = {};
+  };
+
+  /// Returns whether the frame in this place has anything to prove.
+  bool start(std::size_t place) {
+    Flight& flight = flights_[place];
+    const DetectorFrame& frame = *flight.frame;
+    flight.row->clear(frame.columns);
+    if (frame.segments.empty()) {
+      *flight.work = {.frames_skipped = frame.out_of_reach > 0 ? 1U : 0U};
+      return false;
+    }
+    if (skip_ == Skip::kOn)
+      candidates_.find(frame, stage_clock());
+    else
+      candidates_.take_all(frame, stage_clock());
+    *flight.work = candidates_.work();
+    if (candidates_.touched().empty()) return false;
+    prove(frame, place);
+    candidates_.swap_found(flight.found);
+    return true;
+  }
+
+  void prove(const DetectorFrame& frame, std::size_t place) {
     context_->make_current();
     // Otherwise the shader takes the ends' times for those of the frame.
     const std::span<const Segment> tested =
         method_ == Method::kStatic ? candidates_.ways().segments : std::span(frame.segments);
+    enter(Stage::kSkinning);
     for (std::size_t i = 0; i < candidates_.touched().size(); ++i) candidates_.skin_touched(frame, i);
-    prover_->begin(stage_clock());
+    prover_->begin(place, stage_clock());
     for (std::size_t i = 0; i < candidates_.touched().size(); ++i)
       prover_->add(candidates_.now(i), candidates_.before(i), tested, candidates_.segments(candidates_.touched()[i]));
-    return prover_->finish();
+    prover_->start();
+  }
+
+  void finish(std::size_t place) {
+    const Flight& flight = flights_[place];
+    flight.work->pairs_captured = offer(flight, prover_->finish(place));
+    finder_.finish(*flight.frame, *flight.row, *flight.work);
   }
 
   /// Decides the pairs that were not proven to miss. Returns their number.
-  std::uint64_t offer(const DetectorFrame& frame, std::span<const std::uint32_t> bits, ContactRow& row) {
+  std::uint64_t offer(const Flight& flight, std::span<const std::uint32_t> bits) {
     enter(Stage::kDecision);
+    const FoundPatches& found = flight.found;
     std::uint64_t pairs = 0;
     auto next = bits.begin();
-    for (std::size_t i = 0; i < candidates_.touched().size(); ++i) {
-      const TouchedMeshlet& touched = candidates_.touched()[i];
+    for (std::size_t i = 0; i < found.touched.size(); ++i) {
+      const TouchedMeshlet& touched = found.touched[i];
       const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
-      const MeshletPlaces meshlet = {candidates_.before(i), candidates_.now(i), triangles};
-      for (const std::uint32_t number : candidates_.segments(touched)) {
+      const MeshletPlaces meshlet = {found.before_of(i), found.now_of(i), triangles};
+      for (const std::uint32_t number : found.segments(touched)) {
         const std::uint32_t mine = *next++ & bits_of(triangles.size());
         if (mine == 0) continue;
         pairs += static_cast<std::uint64_t>(std::popcount(mine));
-        finder_.offer(frame, meshlet, frame.segments[number], mine, row);
+        finder_.offer(*flight.frame, meshlet, flight.frame->segments[number], mine, *flight.row);
       }
     }
     return pairs;
@@ -117,6 +165,7 @@ class ShaderProofDetector final : public Detector {
   ContactFinder finder_;
   Meshlets meshlets_;
   CandidatePatches candidates_;
+  std::array<Flight, kMostInFlight> flights_;
   std::optional<CandidateProver> prover_;  ///< made when the context is current
 };
 

@@ -29,6 +29,9 @@ class LimitedContext final : public GlContext {
   }
   ~LimitedContext() override { leave(); }
 
+  /// Lets the driver of the latest of these contexts lose a dispatch or a draw: that after `others` more.
+  static void lose_work_after(int others) { before_lost_ = others; }
+
   /// The largest buffer that was ever made in the latest of these contexts.
   static GLsizeiptr largest_buffer_bytes() { return largest_buffer_bytes_; }
 
@@ -37,6 +40,7 @@ class LimitedContext final : public GlContext {
     limits_ = std::move(limits);
     real_functions_ = &real_->gl();
     largest_buffer_bytes_ = 0;
+    before_lost_ = -1;
   }
 
   void bind() override { real_->make_current(); }
@@ -47,6 +51,8 @@ class LimitedContext final : public GlContext {
     if (name == "glGetInteger64v") return reinterpret_cast<void*>(get_integer_64);
     if (name == "glViewport") return reinterpret_cast<void*>(viewport);
     if (name == "glNamedBufferData") return reinterpret_cast<void*>(named_buffer_data);
+    if (name == "glDispatchCompute") return reinterpret_cast<void*>(dispatch_compute);
+    if (name == "glDrawArrays") return reinterpret_cast<void*>(draw_arrays);
     if (name == "glShaderSource") return reinterpret_cast<void*>(shader_source);
     if (name == "glGetProgramiv") return reinterpret_cast<void*>(get_program);
     if (name == "glGetProgramInfoLog") return reinterpret_cast<void*>(get_program_log);
@@ -77,6 +83,16 @@ class LimitedContext final : public GlContext {
   static void APIENTRY named_buffer_data(GLuint buffer, GLsizeiptr bytes, const void* data, GLenum usage) {
     largest_buffer_bytes_ = std::max(largest_buffer_bytes_, bytes);
     real_functions_->NamedBufferData(buffer, bytes, data, usage);
+  }
+
+  static bool loses_work() {
+    return before_lost_ >= 0 && before_lost_-- == 0;
+  }
+  static void APIENTRY dispatch_compute(GLuint x, GLuint y, GLuint z) {
+    if (!loses_work()) real_functions_->DispatchCompute(x, y, z);
+  }
+  static void APIENTRY draw_arrays(GLenum mode, GLint first, GLsizei count) {
+    if (!loses_work()) real_functions_->DrawArrays(mode, first, count);
   }
 
   static void APIENTRY shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
@@ -111,6 +127,7 @@ class LimitedContext final : public GlContext {
   static inline Limits limits_;
   static inline const GlFunctions* real_functions_ = nullptr;
   static inline GLsizeiptr largest_buffer_bytes_ = 0;
+  static inline int before_lost_ = -1;  // dispatches and draws; negative: none is lost
   static inline int largest_share_ = 0;
   static inline int latest_share_ = 0;
   static inline Probe probe_ = Probe::kAccepted;
