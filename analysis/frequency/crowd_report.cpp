@@ -68,11 +68,11 @@ bool has_crowds(std::span<const SweepSeries> series) {
   return std::ranges::any_of(series, [&](const SweepSeries& one) { return !one.same_crowd(series.front()); });
 }
 
-std::string crowd_table(std::span<const SweepSeries> series) {
+std::string crowd_table(std::span<const SweepSeries> series, std::uint64_t seed) {
   std::string table;
   for (const Crowds& crowds : by_detector(series)) table += table_of(crowds);
   table += "Mean time of a frame, whole round trip; in brackets: times that of the first line.\n";
-  return table + stage_table(series) + disagreement_lines(series);
+  return table + throughput_table(series, seed) + stage_table(series) + disagreement_lines(series);
 }
 
 }  // namespace vestige

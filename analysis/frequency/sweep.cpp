@@ -11,6 +11,7 @@
 
 #include "analysis/frequency/render_thread.hpp"
 #include "analysis/run/detection_run.hpp"
+#include "analysis/run/span_run.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "traces/base/error.hpp"
 
@@ -74,7 +75,12 @@ class RunningSweep {
  public:
   RunningSweep(const std::vector<std::uint32_t>& ids, std::span<const SweptPerson> people, SweepSample sample,
                const std::vector<Contestant>& contestants, const SweepSettings& settings)
-      : ids_(ids), people_(people), contestants_(contestants), settings_(settings), place_count_(sample.places.size()) {
+      : ids_(ids),
+        people_(people),
+        contestants_(contestants),
+        settings_(settings),
+        place_count_(sample.places.size()),
+        random_(settings.seed) {
     sweep_.places = static_cast<std::uint32_t>(place_count_);
     if (place_count_ != 0) sweep_.place_frames = static_cast<std::uint32_t>(sample.places.front().size() - 1);
     sweep_.sample_sha256 = sample.sha256;
@@ -85,9 +91,7 @@ class RunningSweep {
   }
 
   Sweep run(const std::function<bool(double)>& progress) {
-    std::vector<Entry> open;
-    for (std::size_t s = 0; s < sweep_.series.size(); ++s)
-      for (std::size_t p = 0; p < settings_.counts.size(); ++p) open.push_back({s, p});
+    std::vector<Entry> open = entries();
     for (std::size_t s = 0; s < sweep_.series.size(); ++s) {
       if (!progress(0)) return std::move(sweep_);
       racers_[s].reference = make_reference(s);
@@ -97,24 +101,22 @@ class RunningSweep {
       if (!progress(0)) return std::move(sweep_);
       warm_up(entry);
     }
-    std::mt19937_64 random(settings_.seed);
-    std::ranges::shuffle(open, random);
+    std::ranges::shuffle(open, random_);
     for (const Entry& entry : open) {
       if (!progress(0)) return std::move(sweep_);
       measure_cold(entry);
     }
 
-    const double total_s = settings_.min_time_s * static_cast<double>(open.size());
-    double spent_s = 0;
-    while (!open.empty()) {
-      std::ranges::shuffle(open, random);
-      for (const Entry& entry : open) {
-        const double seconds = racers_[entry.series].renderer == nullptr ? measure(entry) : measure_rendered(entry);
-        spent_s += std::min(seconds, settings_.min_time_s);
-        if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return std::move(sweep_);
-      }
-      std::erase_if(open, [&](const Entry& entry) { return is_measured(point_of(entry)); });
-    }
+    const double share = settings_.in_flight == 0 ? 1 : 0.5;
+    const auto turn = [&](const Entry& entry) {
+      return racers_[entry.series].renderer == nullptr ? measure(entry) : measure_rendered(entry);
+    };
+    if (!take_turns(&SweepPoint::repetitions, turn, [&](double done) { return progress(share * done); }))
+      return std::move(sweep_);
+    const auto measure_span = [&](const Entry& entry) { return measure_throughput(entry); };
+    if (settings_.in_flight != 0 &&
+        !take_turns(&SweepPoint::spanned, measure_span, [&](double done) { return progress(share + share * done); }))
+      return std::move(sweep_);
     if (settings_.stages) measure_stages(progress);
     return std::move(sweep_);
   }
@@ -124,6 +126,40 @@ class RunningSweep {
     std::size_t series;
     std::size_t point;
   };
+  /// Where a timed row comes from.
+  struct RowPlace {
+    Entry entry;
+    std::size_t place;
+    std::size_t frame;  ///< in its place
+    std::size_t person;
+  };
+
+  std::vector<Entry> entries() const {
+    std::vector<Entry> all;
+    for (std::size_t s = 0; s < sweep_.series.size(); ++s)
+      for (std::size_t p = 0; p < settings_.counts.size(); ++p) all.push_back({s, p});
+    return all;
+  }
+
+  /// Measures all points in turn, in rounds of a random order, until each is measured. `measure` adds to the `passes`
+  /// of a point and returns the seconds timed. Returns false if stopped.
+  template <typename Measure, typename Report>
+  bool take_turns(std::vector<Repetition> SweepPoint::*passes, Measure measure, Report progress) {
+    std::vector<Entry> open = entries();
+    if (passes == &SweepPoint::spanned)
+      std::erase_if(open, [&](const Entry& entry) { return racers_[entry.series].renderer != nullptr; });
+    const double total_s = settings_.min_time_s * static_cast<double>(open.size());
+    double spent_s = 0;
+    while (!open.empty()) {
+      std::ranges::shuffle(open, random_);
+      for (const Entry& entry : open) {
+        spent_s += std::min(measure(entry), settings_.min_time_s);
+        if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return false;
+      }
+      std::erase_if(open, [&](const Entry& entry) { return is_measured(point_of(entry).*passes); });
+    }
+    return true;
+  }
 
   SweepPoint& point_of(const Entry& entry) { return sweep_.series[entry.series].points[entry.point]; }
 
@@ -149,6 +185,7 @@ class RunningSweep {
       SweepPoint point;
       point.colliders = count;
       point.places = place_count_;
+      point.in_flight = settings_.in_flight;
       series.points.push_back(std::move(point));
     }
     sweep_.series.push_back(std::move(series));
@@ -326,24 +363,55 @@ class RunningSweep {
         run.skipped_us += run.frame_us.back();
       }
       run.work += done;
-      std::uint64_t different = 0;
       for (std::size_t person = 0; person < racer.people.size(); ++person)
-        different += differing(detection.row(person), racer.reference[number][i - 1][person], columns);
-      run.disagreements += different;
-      if (different != 0 && promises_same_bits(contestants_[entry.series].detector))
-        throw Error(contestants_[entry.series].detector,
-                    fmt::format("frame {} gave other contacts with {} colliders than with {}", place[i].index,
-                                ids.size(), racer.scene->drawn_for_any[number].size()),
-                    "this is a bug in Vestige or in the GL driver: try another --context, and report it");
+        run.disagreements += check_row(detection.row(person), {entry, number, i, person}, columns);
     }
     return run;
   }
 
-  bool is_measured(const SweepPoint& point) const {
-    const std::size_t passes = point.repetitions.size() / place_count_;
-    if (point.repetitions.size() % place_count_ != 0 || passes < kFewestPasses) return false;
+  /// Measures the place whose turn it is, by spans of frames. Returns the seconds timed.
+  double measure_throughput(const Entry& entry) {
+    SweepPoint& point = point_of(entry);
+    const std::size_t number = point.spanned.size() % place_count_;
+    const Racer& racer = racers_[entry.series];
+    const std::span<const TraceFrame> place = racer.scene->places[number];
+    const std::vector<std::size_t> columns = columns_at(entry, number);
+    SpanRun detection(racer.people, racer.scene->drawn[entry.point][number]);
+    detection.begin(place.front());
+    Repetition repetition;
+    for (std::size_t first = 1; first < place.size(); first += settings_.in_flight) {
+      const auto frames = place.subspan(first, std::min<std::size_t>(settings_.in_flight, place.size() - first));
+      const auto start = std::chrono::steady_clock::now();
+      detection.step(frames);
+      repetition.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      repetition.frames += frames.size();
+      for (std::size_t person = 0; person < racer.people.size(); ++person)
+        for (std::size_t k = 0; k < frames.size(); ++k)
+          check_row(detection.row(person, k), {entry, number, first + k, person}, columns);
+    }
+    point.spanned.push_back(repetition);
+    return repetition.seconds;
+  }
+
+  /// Returns how many contacts of a timed row differ from the reference. Throws `Error` if its detector promises none.
+  std::uint64_t check_row(const ContactRow& row, const RowPlace& at, const std::vector<std::size_t>& columns) const {
+    const Racer& racer = racers_[at.entry.series];
+    const std::uint64_t different = differing(row, racer.reference[at.place][at.frame - 1][at.person], columns);
+    const std::string& detector = contestants_[at.entry.series].detector;
+    if (different != 0 && promises_same_bits(detector))
+      throw Error(detector,
+                  fmt::format("frame {} gave other contacts with {} colliders than with {}",
+                              racer.scene->places[at.place][at.frame].index, columns.size(),
+                              racer.scene->drawn_for_any[at.place].size()),
+                  "this is a bug in Vestige or in the GL driver: try another --context, and report it");
+    return different;
+  }
+
+  bool is_measured(const std::vector<Repetition>& repetitions) const {
+    const std::size_t passes = repetitions.size() / place_count_;
+    if (repetitions.size() % place_count_ != 0 || passes < kFewestPasses) return false;
     double seconds = 0;
-    for (const Repetition& repetition : point.repetitions) seconds += repetition.seconds;
+    for (const Repetition& repetition : repetitions) seconds += repetition.seconds;
     return seconds >= settings_.min_time_s;
   }
 
@@ -355,6 +423,7 @@ class RunningSweep {
   SweepScene recorded_;
   std::map<std::pair<std::uint32_t, bool>, std::unique_ptr<SweepScene>> copied_;  // by copies and first_only
   std::vector<Racer> racers_;
+  std::mt19937_64 random_;
   Sweep sweep_;
 };
 

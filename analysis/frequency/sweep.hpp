@@ -50,6 +50,8 @@ struct SweepSettings {
   double min_time_s = 1;              ///< least time for every point; the places are repeated until then
   std::uint64_t seed = 1;             ///< seed of the drawn colliders and of the random order
   bool stages = false;                ///< afterwards, measure where the time goes (`measure_stages`)
+  /// Afterwards, measure the throughput with this number of frames in flight. 0: do not. Not beside a renderer.
+  std::uint32_t in_flight = 0;
 };
 
 /// One point of HAVE 2010 Fig. 2: the detection frequency for a number of colliders, of which each copy of a crowd may
@@ -78,7 +80,14 @@ struct SweepPoint {
 
   StageMeans stages;  ///< empty unless asked for, and beside a renderer
 
+  /// Passes of their own, in which the detectors are given spans of `in_flight` frames. Empty unless asked for, and
+  /// beside a renderer.
+  std::vector<Repetition> spanned;
+  std::uint32_t in_flight = 0;  ///< as in the settings
+
+  /// Of one frame after another, so 1 / hz is how long a frame takes: the latency.
   double hz() const { return frequency_hz(repetitions); }
+  double throughput_hz() const { return frequency_hz(spanned); }
   double cold_hz() const { return frequency_hz(cold); }
   /// Mean duration of a frame. NaN where nothing was measured.
   double mean_us() const;
@@ -121,6 +130,9 @@ struct Sweep {
 /// If the scene is drawn during the measurement of a contestant, it is measured in stretches of a fifth of a second, so
 /// that the renderer's 90 Hz take effect. Outside of these stretches, the scene is not drawn. Precondition: the trace
 /// then has one person, and the crowd one copy.
+///
+/// Throughput is measured in passes of its own, over the same frames: spans of frames are given to the detector at once
+/// (`Detector::detect_all`). Building those frames belongs to the time.
 ///
 /// Every timed row is compared with a reference: a row that was computed separately, with all planes that the hash
 /// needs and with all colliders that were drawn at this place for any count. If hits or actuators of the two rows

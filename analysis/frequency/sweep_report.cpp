@@ -122,6 +122,13 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"disagreements", point.disagreements}};
 }
 
+/// A frequency as tables show it.
+std::string with_interval(double hz, const Interval& interval) {
+  std::string text = fmt::format("{:.0f}", hz);
+  if (std::isfinite(interval.low)) text += fmt::format(" ({:.0f} to {:.0f})", interval.low, interval.high);
+  return text;
+}
+
 /// The width of the columns of a table whose heads are the names of these series, in characters.
 std::size_t column_width(std::span<const SweepSeries> series) {
   std::size_t width = 34;
@@ -271,6 +278,13 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
         if (const double rival_hz = fastest_hz(series, rival, one, p); rival_hz > 0)
           point[rival.field] = one.points[p].hz() / rival_hz;
       if (one.renderer) point["rendered_hz"] = one.points[p].rendered_hz();
+      if (!one.points[p].spanned.empty()) {
+        const Interval interval = bootstrap_frequency_hz(one.points[p].spanned, one.points[p].places, seed);
+        point["throughput_hz"] = one.points[p].throughput_hz();
+        point["throughput_hz_low"] = number_or_null(interval.low);
+        point["throughput_hz_high"] = number_or_null(interval.high);
+        point["in_flight"] = one.points[p].in_flight;
+      }
       point.update(to_json(one.points[p].stages));
       points.push_back(std::move(point));
     }
@@ -335,15 +349,14 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
     fmt::format_to(std::back_inserter(table), "{:>9}", series.front().points[p].colliders);
     for (const SweepSeries& one : series) {
       const SweepPoint& point = one.points[p];
-      const Interval interval = interval_of(point, seed);
-      std::string cell = fmt::format("{:.0f}", point.hz());
-      if (std::isfinite(interval.low)) cell += fmt::format(" ({:.0f} to {:.0f})", interval.low, interval.high);
-      fmt::format_to(std::back_inserter(table), "  {:>{}}", point.repetitions.empty() ? "-" : cell, width);
+      const std::string cell = point.repetitions.empty() ? "-" : with_interval(point.hz(), interval_of(point, seed));
+      fmt::format_to(std::back_inserter(table), "  {:>{}}", cell, width);
     }
     const std::string_view paper = paper_figure(series.front().points[p].colliders);
     fmt::format_to(std::back_inserter(table), "   {}\n", paper);
   }
   table += "Hz: frames / total time, whole round trip (95 % bootstrap interval).\n";
+  table += throughput_table(series, seed);
   table += cold_table(series);
   table += contacts_table(series);
   table += spared_table(series);
@@ -353,6 +366,22 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
   table += stage_table(series);
   table += disagreement_lines(series);
   return table;
+}
+
+std::string throughput_table(std::span<const SweepSeries> series, std::uint64_t seed) {
+  const auto has_throughput = [](const SweepSeries& one) {
+    return std::ranges::any_of(one.points, [](const SweepPoint& point) { return !point.spanned.empty(); });
+  };
+  const auto measured = std::ranges::find_if(series, has_throughput);
+  if (measured == series.end()) return "";
+  const std::string title =
+      fmt::format("Throughput: Hz of frames that detectors are given {} at a time (95 % bootstrap interval)",
+                  measured->points.front().in_flight);
+  return table_of(series, title, has_throughput, [&](const SweepSeries& one, std::size_t p) -> std::string {
+    const SweepPoint& point = one.points[p];
+    if (point.spanned.empty()) return "";
+    return with_interval(point.throughput_hz(), bootstrap_frequency_hz(point.spanned, point.places, seed));
+  });
 }
 
 std::string disagreement_lines(std::span<const SweepSeries> series) {

@@ -12,6 +12,7 @@ namespace vestige {
 /// Returns `series[…]` of a sweep's JSON (for the fields, see the comments of each struct). Medians and percentiles are
 /// of single frames, in microseconds. hz is frames over total time of all passes but the first; hz_low and hz_high are
 /// its 95 % bootstrap interval, null where passes are too few or scatter too much. cold_hz is that of the first pass.
+/// throughput_hz, with its interval, is that of spans of in_flight frames, where it was measured.
 /// empty_share is the share of frames without a contact. times_paper and times_embree are hz over the hz of the fastest
 /// `paper` or Embree detector at the same count, where one was measured.
 nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_t seed);
@@ -22,11 +23,14 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
 std::string frame_times_csv(std::span<const SweepSeries> series);
 
 /// Returns a table for people: the frequency of every series at every count, beside the paper's figures. Below, the
-/// table says how often the measured frames have contacts, how fast the first pass was, how many times as fast each
-/// series is as the fastest `paper` and the fastest Embree detector, where they were measured without a renderer, and
-/// what further planes cost. It also says how many frames of the scene were drawn, and which points disagreed with
-/// their reference.
+/// table says the throughput, where it was measured, how often the measured frames have contacts, how fast the first
+/// pass was, how many times as fast each series is as the fastest `paper` and the fastest Embree detector, where they
+/// were measured without a renderer, and what further planes cost. It also says how many frames of the scene were
+/// drawn, and which points disagreed with their reference.
 std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed);
+
+/// Returns the part of that table with the throughput. Empty unless it was measured.
+std::string throughput_table(std::span<const SweepSeries> series, std::uint64_t seed);
 
 /// Returns, as JSON, how often the measured frames have contacts, and all frames of the trace.
 nlohmann::ordered_json sample_json(const Sweep& sweep);

@@ -13,8 +13,10 @@
 #include "analysis/frequency/sweep_report.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/scene.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/measure/sweep_choice.hpp"
 #include "cli/verbs.hpp"
+#include "detector/detectors/in_flight.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/mcap/compression.hpp"
 
@@ -146,7 +148,8 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   const std::vector<std::string> wrong = disagreements(series);
   for (const std::string& warning : wrong) warn(warning, verbosity);
   const bool crowded = has_crowds(series);
-  print_summary((crowded ? crowd_table(series) : sweep_table(series, options.settings.seed)) + sample_sentence(sweep),
+  print_summary((crowded ? crowd_table(series, options.settings.seed) : sweep_table(series, options.settings.seed)) +
+                    sample_sentence(sweep),
                 {common.json}, common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {common.json}, common);
   const bool wants_figures = !choice.no_figure && !interrupted();
@@ -184,6 +187,12 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
       ->type_name("LIST");
   verb->add_flag("--stages", options->settings.stages,
                  "Also measure where the time of a frame goes, in a pass of its own: pose, skinning, test, ...");
+  verb->add_option("--in-flight", options->settings.in_flight,
+                   "Also measure throughput, as long again: frames are given to each detector K at a time, and GPUs "
+                   "work on several at once; the frequency itself stays that of one frame after another, as in the "
+                   "paper")
+      ->check(help::whole_number(1, kMostInFlight))
+      ->type_name("K");
   add_measuring_options(*verb, options->choice, options->settings, "Consecutive frames at each place",
                         "Folder for sweep.json, the durations of frames, and the figures");
   verb->callback([options, &invocation] { run_sweep_verb(*options, invocation); });

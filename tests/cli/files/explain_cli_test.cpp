@@ -105,8 +105,10 @@ TEST_F(Explain, KnowsEveryNameThatVerbsOnTracesWrite) {
 TEST_F(Explain, KnowsEveryNameThatMeasurementsWrite) {
   record_small();
   const std::string quick = " --min-time 0.01 --no-figure -q";
-  must_run("vestige sweep small.mcap --counts 1,3 --detector cpu,paper,embree,decimated --skip on,off --stages -o a" +
-           quick);
+  must_run(
+      "vestige sweep small.mcap --counts 1,3 --detector cpu,paper,embree,decimated --skip on,off --stages --in-flight "
+      "2 -o a" +
+      quick);
   must_run("vestige sweep small.mcap --counts 1,3 --detector cpu,paper,embree,decimated --skip on,off -o b" + quick);
   must_run("vestige sweep small.mcap --counts 1 --detector cpu --renderer on -o c" + quick);
   EXPECT_NE(run("vestige compare a b --json compare.json -q").exit_code, 1);

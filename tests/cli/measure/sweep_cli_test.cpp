@@ -208,6 +208,38 @@ TEST_F(SweepCommandLine, SaysWhereTheTimeGoesIfAsked) {
   EXPECT_FALSE(unasked["series"][0]["points"][0].contains("stages"));
 }
 
+TEST_F(SweepCommandLine, MeasuresThroughputIfAskedBesideTheFrequencyOfSingleFrames) {
+  record_small();
+  const std::string flags = " --counts 1,20 --min-time 0.01 --runs 2 --run-frames 10 -o s --force";
+  const test::Outcome sweep = run("vestige sweep small.mcap --detector compute,cpu --renderer on --in-flight 4" +
+                                  flags + test::gl_flags("osmesa"));
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output, HasSubstr("Throughput: Hz of frames that detectors are given 4 at a time"));
+  const auto json = json_in("s/sweep.json");
+  ASSERT_EQ(json["series"].size(), 4U);
+  for (const auto& series : json["series"])
+    for (const auto& point : series["points"]) {
+      EXPECT_GT(point["hz"], 0);
+      // the renderer draws during the other passes only
+      ASSERT_EQ(point.contains("throughput_hz"), series["renderer"] == "off");
+      if (!point.contains("throughput_hz")) continue;
+      EXPECT_GT(point["throughput_hz"], 0);
+      EXPECT_NE(point["throughput_hz"], point["hz"]);
+      EXPECT_EQ(point["in_flight"], 4);
+      if (!point["throughput_hz_low"].is_null()) {
+        EXPECT_LE(point["throughput_hz_low"], point["throughput_hz"]);
+      }
+    }
+  EXPECT_EQ(run("cp -r s again && vestige compare s again").exit_code, 0);
+  const test::Outcome crowds =
+      run("vestige sweep small.mcap --detector cpu --avatars 1,2 --in-flight 4 --no-figure" + flags);
+  EXPECT_THAT(crowds.standard_output, AllOf(HasSubstr("Throughput:"), HasSubstr("cpu, skip on, 2 people")));
+  const test::Outcome unasked = run("vestige sweep small.mcap --detector cpu --no-figure" + flags);
+  EXPECT_THAT(unasked.standard_output, Not(HasSubstr("Throughput")));
+  EXPECT_FALSE(json_in("s/sweep.json")["series"][0]["points"][0].contains("throughput_hz"));
+  expect_failure("vestige sweep small.mcap --in-flight 9 -o t", 2, {"--in-flight", "8"}, "t/sweep.json");
+}
+
 /// Whatever the colliders' order in the trace, the point of all of them sees what a replay sees.
 TEST_F(SweepCommandLine, MeasuresTheWholeTraceWhereItIsAllAsked) {
   record_small();
