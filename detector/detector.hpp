@@ -23,6 +23,10 @@ namespace vestige {
 /// an actuator.
 enum class Surface { kAll, kMapped };
 
+/// Who finds and skins the patches of skin that segments may meet, for `compute` with Skip::kOn. kFastest: the CPU if
+/// the renderer is software, otherwise the GPU. The contacts are the same.
+enum class Culling { kFastest, kCpu, kGpu };
+
 struct DetectorOptions {
   Surface surface = Surface::kAll;
   PlaneSet planes = {};  ///< the planes that the rows must carry
@@ -30,15 +34,16 @@ struct DetectorOptions {
   Skip skip = Skip::kOff;
   /// Divide the shaders' work as on a GPU if the renderer is software, too. It is slower there. For tests.
   bool as_on_gpu = false;
+  Culling culling = Culling::kFastest;  ///< the others are for tests
 };
 
 /// Work done by one call of `detect`, or the sum over several calls; for reports.
 struct DetectorWork {
   std::uint64_t pairs_tested = 0;      ///< (segment, triangle) pairs
   std::uint64_t triangles_tested = 0;  ///< triangles that were tested at least once
-  std::uint64_t pairs_captured = 0;    ///< pairs that the geometry shader could not reject
+  std::uint64_t pairs_captured = 0;    ///< pairs that the shaders could not reject
   std::uint64_t pairs_meeting = 0;     ///< pairs that really meet (counted by `geometry` and `cpu`)
-  std::uint64_t meshlets_skinned = 0;  ///< 0 if the detector skinned the whole mesh
+  std::uint64_t meshlets_skinned = 0;  ///< by CPU or GPU; 0 if the detector skinned the whole mesh
   std::uint64_t frames_skipped = 0;    ///< 1 if the bounds alone proved that nothing can meet
   std::uint64_t part_pairs = 0;        ///< pairs of a collider in reach and a part of the skin (with skipping)
   std::uint64_t pairs_spared = 0;      ///< of them, pairs not looked at, as an earlier frame had proven them apart

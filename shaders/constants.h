@@ -7,6 +7,14 @@
 #define VESTIGE_BINDING_CANDIDATES 3  // touched meshlets, and the segments that may meet each (candidates.glsl)
 #define VESTIGE_BINDING_QUESTIONS 4   // of the probe of the shaders' arithmetic
 
+// Of cull.comp, and of candidates.comp after it. No driver need have more than the bindings 0 to 7.
+#define VESTIGE_BINDING_FOUND 0           // the slots, in memory that the CPU reads
+#define VESTIGE_BINDING_CULLED_CORNERS 2  // of the touched meshlets
+#define VESTIGE_BINDING_COUNTS 4          // of slots and of what was done
+#define VESTIGE_BINDING_MESHLETS 5        // the boxes and the corners of each
+#define VESTIGE_BINDING_REST_BOXES 6
+#define VESTIGE_BINDING_VERTICES 7
+
 #define VESTIGE_ATTRIBUTE_POSITION 0            // vec3, bind pose
 #define VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE 1  // vec2
 #define VESTIGE_ATTRIBUTE_PALETTE_0 2           // uvec4, influences 0 to 3
@@ -28,6 +36,8 @@
 #define VESTIGE_UNIFORM_FIRST_TRIANGLE 8   // int, number of the first triangle of the draw
 #define VESTIGE_UNIFORM_FIRST_SLOT 9       // uint, number of the bound block's first slot
 #define VESTIGE_UNIFORM_SLOT_COUNT 10      // uint, of the bound block
+#define VESTIGE_UNIFORM_CORNER_ERROR 11    // float, metres: how far a corner may be from the CPU's
+#define VESTIGE_UNIFORM_BOX_MARGIN 12      // float, metres: how far skin may be beyond a meshlet's box
 
 // How a collider's motion and the moving skin meet (detector/method.hpp).
 #define VESTIGE_METHOD_STATIC 0

@@ -15,6 +15,7 @@ extern const std::string_view kCandidatesGlsl;
 extern const std::string_view kCandidatesVert;
 extern const std::string_view kCandidatesGeom;
 extern const std::string_view kCandidatesComp;
+extern const std::string_view kCullComp;
 extern const std::string_view kSceneVert;
 extern const std::string_view kSceneFrag;
 extern const std::string_view kProbeGlsl;

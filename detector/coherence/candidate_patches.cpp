@@ -34,7 +34,7 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
 }
 
 void CandidatePatches::take_all(const DetectorFrame& frame, StageClock* clock) {
-  enter_stage(clock, Stage::kCandidates);
+  enter_stage(clock, Stage::kSkinning);
   ways_ = {frame.segments, {}};
   is_anew_ = false;
   begin();

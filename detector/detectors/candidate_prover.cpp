@@ -101,6 +101,11 @@ struct CandidateProver::Place {
   std::vector<std::uint32_t> bits;  ///< what `finish` returns
 };
 
+Error unfinished_shader() {
+  return {"OpenGL", "the driver ended a shader before its work was done",
+          "use --detector cpu, which finds the same contacts, or another --context or --device"};
+}
+
 void unpack_words(std::span<const std::uint32_t, kSlotLanes> words, std::size_t segments, std::uint32_t* out) {
   std::uint32_t any = 0;
   std::uint32_t all = 0xFFFFFFFF;
@@ -110,9 +115,7 @@ void unpack_words(std::span<const std::uint32_t, kSlotLanes> words, std::size_t 
   }
   constexpr std::size_t kTestedShift = 4 * kSlotSegments;
   const std::uint32_t tested = static_cast<std::uint32_t>(8 + segments);
-  if (any >> kTestedShift != tested || all >> kTestedShift != tested)
-    throw Error("OpenGL", "the driver ended a shader before its work was done",
-                "use --detector cpu, which finds the same contacts, or another --context or --device");
+  if (any >> kTestedShift != tested || all >> kTestedShift != tested) throw unfinished_shader();
   std::fill_n(out, segments, 0);
   if ((any & ((1U << kTestedShift) - 1)) == 0) return;
   for (std::size_t i = 0; i < segments; ++i)
@@ -122,7 +125,7 @@ void unpack_words(std::span<const std::uint32_t, kSlotLanes> words, std::size_t 
 CandidateProver::CandidateProver(const GlContext& context, const ProverOptions& options)
     : gl_(context.gl()),
       options_(options),
-      waits_actively_(!context.info().software),
+      wait_(context.info().software ? FenceWait::kAsleep : FenceWait::kActive),
       most_meshlets_(most_meshlets(gl_, options.method)),
       nowhere_(gl_, PlaneSet()),
       timer_(gl_) {
@@ -142,7 +145,7 @@ const GlProgram& CandidateProver::program(bool has_spheres) {
   if (program) return *program;
   const std::string head = fmt::format(
       "#version 450 core\n{}#define METHOD {}\n#define SPHERES {}\n#define BLOCK_SLOTS {}\n#define BLOCK_SEGMENTS {}\n"
-      "#define LANES {}u\n#define SLOT_SEGMENTS {}u\n#define GROUP_THREADS {}u\n",
+      "#define CULLED_ON_GPU 0\n#define LANES {}u\n#define SLOT_SEGMENTS {}u\n#define GROUP_THREADS {}u\n",
       shaders::kConstantsH, static_cast<int>(options_.method), has_spheres ? 1 : 0, kBlockSlots, kBlockSegments,
       kSlotLanes, kSlotSegments, options_.as_on_gpu ? kGpuGroupThreads : kSlotLanes);
   const std::string proofs(shaders::kCandidatesGlsl);
@@ -272,13 +275,8 @@ void CandidateProver::start_block(const GlProgram& shader, std::size_t number) {
 /// Waits for what the GPU has of a place, and takes its bits.
 void CandidateProver::wait(Place& place) {
   if (place.fence == nullptr) return;
-  constexpr GLuint64 kSecond_ns = 1000000000;
-  GLenum state = GL_TIMEOUT_EXPIRED;
-  while (state == GL_TIMEOUT_EXPIRED) state = gl_.ClientWaitSync(place.fence, 0, waits_actively_ ? 0 : kSecond_ns);
-  gl_.DeleteSync(std::exchange(place.fence, nullptr));
+  await_fence(gl_, std::exchange(place.fence, nullptr), wait_);
   check_gl(gl_, "proving candidates");
-  if (state == GL_WAIT_FAILED)
-    throw Error("OpenGL", "the driver cannot wait for its own work", "try another --context");
   place.read_words();
   place.forget();
 }

@@ -17,6 +17,7 @@
 #include "detector/gl/gl_objects.hpp"
 #include "detector/method.hpp"
 #include "detector/stages.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 
@@ -34,6 +35,9 @@ struct ProverOptions {
 /// The part of a slot's words (shaders/candidates.glsl) that belongs to one of eight lanes, four triangles each.
 inline constexpr std::size_t kSlotLanes = kMeshletTriangles / 4;
 inline constexpr std::size_t kSlotSegments = 7;
+
+/// Returns what to throw if shaders did not do all of their work.
+Error unfinished_shader();
 
 /// Writes, for each of `segments` segments of a slot, the bits of the triangles that it may meet to `out`. Throws
 /// `Error` if a word does not say that its lane tested all of them: llvmpipe, for one, ends loops of more than 65 535
@@ -84,7 +88,7 @@ class CandidateProver {
 
   const GlFunctions& gl_;
   ProverOptions options_;
-  bool waits_actively_;        ///< a GPU is done before the system would wake this thread
+  FenceWait wait_;             ///< a GPU is done before the system would wake this thread
   std::size_t most_meshlets_;  ///< whose corners fit
   CollisionTexture nowhere_;
   DrawTimer timer_;

@@ -13,6 +13,7 @@
 #include "detector/coherence/candidate_patches.hpp"
 #include "detector/coherence/found_patches.hpp"
 #include "detector/detectors/contact_finder.hpp"
+#include "detector/detectors/gpu_compute_detector.hpp"
 #include "detector/detectors/in_flight.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/skinning.hpp"
@@ -180,6 +181,10 @@ std::unique_ptr<Detector> make_shader_proof_detector(std::shared_ptr<GlContext> 
 std::unique_ptr<Detector> make_compute_detector(std::shared_ptr<GlContext> context, const Avatar& avatar,
                                                 const ActuatorMap& map, const DetectorOptions& options) {
   require_proofs("compute", context->info());
+  const bool culls_on_gpu =
+      options.culling == Culling::kFastest ? !context->info().software : options.culling == Culling::kGpu;
+  if (options.skip == Skip::kOn && culls_on_gpu)
+    return make_gpu_compute_detector(std::move(context), avatar, map, options);
   return make_shader_proof_detector(std::move(context), ProofStage::kCompute, avatar, map, options);
 }
 

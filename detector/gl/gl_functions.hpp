@@ -22,6 +22,7 @@ namespace vestige {
   X(PFNGLCLIENTWAITSYNCPROC, ClientWaitSync)                             \
   X(PFNGLCLIPCONTROLPROC, ClipControl)                                   \
   X(PFNGLCOMPILESHADERPROC, CompileShader)                               \
+  X(PFNGLCOPYNAMEDBUFFERSUBDATAPROC, CopyNamedBufferSubData)             \
   X(PFNGLCREATEBUFFERSPROC, CreateBuffers)                               \
   X(PFNGLCREATEFRAMEBUFFERSPROC, CreateFramebuffers)                     \
   X(PFNGLCREATEPROGRAMPROC, CreateProgram)                               \
@@ -45,6 +46,7 @@ namespace vestige {
   X(PFNGLDEPTHFUNCPROC, DepthFunc)                                       \
   X(PFNGLDISABLEPROC, Disable)                                           \
   X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                           \
+  X(PFNGLDISPATCHCOMPUTEINDIRECTPROC, DispatchComputeIndirect)           \
   X(PFNGLDRAWARRAYSPROC, DrawArrays)                                     \
   X(PFNGLDRAWELEMENTSINSTANCEDPROC, DrawElementsInstanced)               \
   X(PFNGLENABLEPROC, Enable)                                             \

@@ -100,6 +100,16 @@ GlProgram::~GlProgram() {
   gl_.DeleteProgram(name_);
 }
 
+void await_fence(const GlFunctions& gl, GLsync fence, FenceWait how) {
+  constexpr GLuint64 kSecond_ns = 1000000000;
+  GLenum state = GL_TIMEOUT_EXPIRED;
+  while (state == GL_TIMEOUT_EXPIRED)
+    state = gl.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, how == FenceWait::kActive ? 0 : kSecond_ns);
+  gl.DeleteSync(fence);
+  if (state == GL_WAIT_FAILED)
+    throw Error("OpenGL", "the driver cannot wait for its own work", "try another --context");
+}
+
 GLint gl_limit(const GlFunctions& gl, GLenum name) {
   GLint value = 0;
   gl.GetIntegerv(name, &value);

@@ -69,6 +69,13 @@ class GlProgram {
   GLuint name_ = 0;
 };
 
+/// kAsleep: the system wakes the thread. kActive: the thread asks again and again, as a GPU is done before the system
+/// would wake it.
+enum class FenceWait { kAsleep, kActive };
+
+/// Waits until the work before a fence is done, and deletes the fence. Throws `Error` if the driver cannot wait.
+void await_fence(const GlFunctions& gl, GLsync fence, FenceWait how);
+
 /// Returns one of the driver's limits.
 GLint gl_limit(const GlFunctions& gl, GLenum name);
 

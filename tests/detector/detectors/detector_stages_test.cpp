@@ -39,8 +39,11 @@ std::unique_ptr<Detector> timed_embree(const Avatar& avatar, const ActuatorMap& 
 std::unique_ptr<Detector> timed_paper(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
   return make_paper_detector(test::make_context(), avatar, map, options);
 }
+template <Culling kCulling>
 std::unique_ptr<Detector> timed_compute(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
-  return make_compute_detector(test::make_context(), avatar, map, options);
+  DetectorOptions culling = options;
+  culling.culling = kCulling;
+  return make_compute_detector(test::make_context(), avatar, map, culling);
 }
 
 std::unique_ptr<Detector> timed_geometry(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
@@ -101,11 +104,18 @@ INSTANTIATE_TEST_SUITE_P(
                  timed_geometry,
                  Skip::kOn,
                  {"pose", "candidates", "skinning", "upload", "draw", "read_back", "decision"}},
-        StagesOf{"compute", timed_compute, Skip::kOff, {"pose", "skinning", "upload", "draw", "read_back", "decision"}},
+        StagesOf{"compute",
+                 timed_compute<Culling::kCpu>,
+                 Skip::kOff,
+                 {"pose", "skinning", "upload", "draw", "read_back", "decision"}},
         StagesOf{"compute_skipping",
-                 timed_compute,
+                 timed_compute<Culling::kCpu>,
                  Skip::kOn,
-                 {"pose", "candidates", "skinning", "upload", "draw", "read_back", "decision"}}),
+                 {"pose", "candidates", "skinning", "upload", "draw", "read_back", "decision"}},
+        StagesOf{"compute_culling",
+                 timed_compute<Culling::kGpu>,
+                 Skip::kOn,
+                 {"pose", "skinning", "upload", "draw", "read_back", "decision"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

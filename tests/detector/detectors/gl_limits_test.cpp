@@ -12,6 +12,7 @@
 #include "tests/support/gl/gl_context.hpp"
 #include "tests/support/gl/limited_context.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/pairs/pile.hpp"
 #include "tests/support/small_avatar.hpp"
 
 namespace vestige {
@@ -20,35 +21,14 @@ namespace {
 using test::LimitedContext;
 using ::testing::HasSubstr;
 
-/// Triangles above each other, and segments that pass through all of them.
-Avatar pile_of(std::uint32_t triangle_count) {
-  std::vector<glm::vec3> vertices;
-  std::vector<glm::uvec3> triangles;
-  for (std::uint32_t i = 0; i < triangle_count; ++i) {
-    for (const glm::vec2 corner : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
-      vertices.emplace_back(corner.x, corner.y, 0.001F * static_cast<float>(i));
-    triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
-  }
-  return test::rigid_avatar(vertices, triangles);
-}
-
-DetectorFrame frame_through(const Avatar& pile, std::uint32_t segment_count) {
-  std::vector<Segment> segments;
-  for (std::uint32_t i = 0; i < segment_count; ++i) {
-    const float x = 0.4F * static_cast<float>(i) / static_cast<float>(segment_count);
-    segments.push_back({i, {x, 0.3F, 1}, {x, 0.3F, -1}});
-  }
-  return test::frame_of(pile, segments);
-}
-
 constexpr GLint kHeadBytes = 8;
 constexpr GLint kPairBytes = 8;
 
 TEST(SmallStorageBlocks, LoseNoPairAndAreNeverExceeded) {
   constexpr GLint kLimit = kHeadBytes + kPairBytes * 12288;
-  const Avatar pile = pile_of(300);
+  const Avatar pile = test::pile_of(300);
   const ActuatorMap map;
-  const DetectorFrame frame = frame_through(pile, 100);
+  const DetectorFrame frame = test::frame_through(pile, 100);
   const auto geometry = make_geometry_detector(LimitedContext::make({{GL_MAX_SHADER_STORAGE_BLOCK_SIZE, kLimit}}), pile,
                                                map, {Surface::kAll, PlaneSet(), Method::kStatic, Skip::kOff});
   ContactRow row;
@@ -63,9 +43,9 @@ TEST(SmallStorageBlocks, LoseNoPairAndAreNeverExceeded) {
 
 /// Ten meshlets in four rounds.
 TEST(SmallTextureBuffers, HoldAFewMeshletsAtATimeAndLoseNoPair) {
-  const Avatar pile = pile_of(300);
+  const Avatar pile = test::pile_of(300);
   const ActuatorMap map;
-  const DetectorFrame frame = frame_through(pile, 100);
+  const DetectorFrame frame = test::frame_through(pile, 100);
   for (const auto make : {make_geometry_detector, make_compute_detector}) {
     const auto detector = make(LimitedContext::make({{GL_MAX_TEXTURE_BUFFER_SIZE, 3 * 72}}), pile, map,
                                {Surface::kAll, PlaneSet(), Method::kStatic, Skip::kOn});
@@ -76,15 +56,30 @@ TEST(SmallTextureBuffers, HoldAFewMeshletsAtATimeAndLoseNoPair) {
   }
 }
 
+/// Room for three meshlets, where shaders touch ten.
+TEST(SmallTextureBuffers, LeaveAFrameThatDoesNotFitToTheCpu) {
+  const Avatar pile = test::pile_of(300);
+  const ActuatorMap map;
+  const auto compute = make_compute_detector(LimitedContext::make({{GL_MAX_TEXTURE_BUFFER_SIZE, 3 * 72}}), pile, map,
+                                             {.method = Method::kStatic, .skip = Skip::kOn, .culling = Culling::kGpu});
+  ContactRow row;
+  for (const std::uint32_t colliders : {100U, 3U}) {
+    const DetectorWork work = compute->detect(test::frame_through(pile, colliders), row);
+    EXPECT_EQ(work.pairs_captured, 0U);
+    EXPECT_EQ(work.pairs_meeting, 300U * colliders);
+    for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 299U);
+  }
+}
+
 TEST(SmallStorageBlocks, ThatCannotHoldThePairsOfOneTriangleAreNamed) {
-  const Avatar pile = pile_of(3);
+  const Avatar pile = test::pile_of(3);
   const ActuatorMap map;
   const auto geometry =
       make_geometry_detector(LimitedContext::make({{GL_MAX_SHADER_STORAGE_BLOCK_SIZE, kHeadBytes + kPairBytes * 100}}),
                              pile, map, {Surface::kAll, PlaneSet(), Method::kStatic, Skip::kOff});
   ContactRow row;
-  EXPECT_EQ(geometry->detect(frame_through(pile, 100), row).pairs_meeting, 300U);
-  EXPECT_THAT(test::message_of([&] { geometry->detect(frame_through(pile, 101), row); }),
+  EXPECT_EQ(geometry->detect(test::frame_through(pile, 100), row).pairs_meeting, 300U);
+  EXPECT_THAT(test::message_of([&] { geometry->detect(test::frame_through(pile, 101), row); }),
               HasSubstr("101 pairs of segment and triangle do not fit"));
 }
 
@@ -103,27 +98,27 @@ TEST(CapturedPairs, AreDrawnInRangesWhoseCountCannotWrap) {
 }
 
 TEST(SmallViewports, HaveRoomForEveryCollider) {
-  const Avatar avatar = pile_of(1);
+  const Avatar avatar = test::pile_of(1);
   const ActuatorMap map;
   const auto paper = make_paper_detector(LimitedContext::make({{GL_MAX_VIEWPORT_DIMS, 64}}), avatar, map, {});
   ContactRow row;
-  paper->detect(frame_through(avatar, 1000), row);
+  paper->detect(test::frame_through(avatar, 1000), row);
   for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(row[i].hit()) << i;
 }
 
 TEST(DriversThatLinkNoLargeShares, AreGivenSmallerOnesAndLoseNoContact) {
-  const Avatar avatar = pile_of(1);
+  const Avatar avatar = test::pile_of(1);
   const ActuatorMap map;
   ContactRow row;
   for (const bool as_on_gpu : {false, true}) {
     const auto paper = make_paper_detector(LimitedContext::make({}, 2), avatar, map, {.as_on_gpu = as_on_gpu});
     for (const std::uint32_t colliders : {100U, 3U, 200U}) {
-      paper->detect(frame_through(avatar, colliders), row);
+      paper->detect(test::frame_through(avatar, colliders), row);
       for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(row[i].hit()) << i;
     }
   }
   const auto refused = make_paper_detector(LimitedContext::make({}, 0), avatar, map, {});
-  EXPECT_THAT(test::message_of([&] { refused->detect(frame_through(avatar, 100), row); }),
+  EXPECT_THAT(test::message_of([&] { refused->detect(test::frame_through(avatar, 100), row); }),
               HasSubstr("the driver does not accept a shader"));
 }
 
@@ -156,7 +151,7 @@ TEST(ShaderArithmeticThatBreaksAProof, RefusesGeometryByNameWithTheCauseAndTheRe
 }
 
 TEST(ShaderArithmeticThatIsNotMeasured, RefusesGeometryByNameAndNoOtherDetector) {
-  const Avatar avatar = pile_of(1);
+  const Avatar avatar = test::pile_of(1);
   const ActuatorMap map;
   const auto refusing = [] { return LimitedContext::make({}, 1 << 30, test::Probe::kRefused); };
   for (const Skip skip : {Skip::kOff, Skip::kOn})
@@ -171,7 +166,7 @@ TEST(ShaderArithmeticThatIsNotMeasured, RefusesGeometryByNameAndNoOtherDetector)
   EXPECT_THAT(paper->gl_info().probe_refusal, ::testing::EndsWith("..."));
   EXPECT_EQ(paper->gl_info().probe_refusal.size(), 300U);
   ContactRow row;
-  paper->detect(frame_through(avatar, 1), row);
+  paper->detect(test::frame_through(avatar, 1), row);
   EXPECT_TRUE(row[0].hit());
 }
 

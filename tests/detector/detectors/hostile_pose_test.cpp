@@ -47,6 +47,12 @@ std::unique_ptr<Detector> make_compute(const Avatar& avatar, const ActuatorMap& 
   return make_compute_detector(test::make_context(), avatar, map, options);
 }
 
+std::unique_ptr<Detector> make_culling(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
+  DetectorOptions culling = options;
+  culling.culling = Culling::kGpu;
+  return make_compute(avatar, map, culling);
+}
+
 template <decltype(make_cpu_detector)* kMake>
 std::unique_ptr<Detector> make_skipping(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
   DetectorOptions skipping = options;
@@ -56,6 +62,7 @@ std::unique_ptr<Detector> make_skipping(const Avatar& avatar, const ActuatorMap&
 constexpr auto make_skipping_cpu_detector = make_skipping<make_cpu_detector>;
 constexpr auto make_skipping_geometry = make_skipping<make_geometry>;
 constexpr auto make_skipping_compute = make_skipping<make_compute>;
+constexpr auto make_culling_compute = make_skipping<make_culling>;
 
 test::SceneRun run(const std::vector<TraceFrame>& scene, Method method, decltype(make_cpu_detector)* make) {
   const auto detector = make(builtin_avatar(), no_map(), {Surface::kAll, kHashedPlanes, method});
@@ -101,7 +108,7 @@ template <typename Check>
 void expect_everywhere(const std::vector<TraceFrame>& scene, Method method, const std::vector<ContactRow>& expected,
                        Check&& check) {
   for (const auto make : {make_cpu_detector, make_skipping_cpu_detector, make_geometry, make_skipping_geometry,
-                          make_skipping_compute, make_exact_detector}) {
+                          make_skipping_compute, make_culling_compute, make_exact_detector}) {
     const test::SceneRun found = run(scene, method, make);
     check(found);
     EXPECT_EQ(found.first_non_finite, kHostileFrame);
@@ -184,6 +191,7 @@ TEST_P(FinitePose, HoweverStrangeIsDecidedToTheSameBitsAsTheTruth) {
   const test::SceneRun drawn = run(hostile, method, make_geometry);
   const test::SceneRun drawn_skipping = run(hostile, method, make_skipping_geometry);
   const test::SceneRun computed = run(hostile, method, make_skipping_compute);
+  const test::SceneRun culled = run(hostile, method, make_culling_compute);
   const test::SceneRun truth = run(hostile, method, make_exact_detector);
   EXPECT_FALSE(found.first_non_finite);
   for (std::size_t frame = 0; frame < kHostileFrames; ++frame) {
@@ -192,6 +200,7 @@ TEST_P(FinitePose, HoweverStrangeIsDecidedToTheSameBitsAsTheTruth) {
     EXPECT_EQ(hash_of(drawn.rows[frame]), hash_of(truth.rows[frame])) << frame;
     EXPECT_EQ(hash_of(drawn_skipping.rows[frame]), hash_of(truth.rows[frame])) << frame;
     EXPECT_EQ(hash_of(computed.rows[frame]), hash_of(truth.rows[frame])) << frame;
+    EXPECT_EQ(hash_of(culled.rows[frame]), hash_of(truth.rows[frame])) << frame;
     if (frame == kHostileFrame || frame == kHostileFrame + 1) continue;
     EXPECT_EQ(hash_of(found.rows[frame]), hash_of(calm.rows[frame])) << frame;
   }

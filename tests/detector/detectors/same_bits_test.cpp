@@ -22,6 +22,13 @@ using test::builtin_map;
 
 using Question = std::tuple<std::string_view, Method>;
 
+std::unique_ptr<Detector> make_compute_that_culls(std::shared_ptr<GlContext> context, const Avatar& avatar,
+                                                  const ActuatorMap& map, const DetectorOptions& options) {
+  DetectorOptions culling = options;
+  culling.culling = Culling::kGpu;
+  return make_compute_detector(std::move(context), avatar, map, culling);
+}
+
 class SameBits : public ::testing::TestWithParam<Question> {};
 
 TEST_P(SameBits, ComeFromTheCpuAndFromTheSlowTruthHereAndTenThousandKilometresAway) {
@@ -52,7 +59,7 @@ TEST_P(SameBits, ComeFromShadersInEveryContextSkippingOrNot) {
   for (const auto make_context : {test::make_context, make_osmesa_context}) {
     for (const Skip skip : {Skip::kOff, Skip::kOn}) {
       options.skip = skip;
-      for (const auto make : {make_geometry_detector, make_compute_detector}) {
+      for (const auto make : {make_geometry_detector, make_compute_detector, make_compute_that_culls}) {
         const auto detector = make(make_context(), builtin_avatar(), builtin_map(), options);
         EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), colliders, *detector)), expected)
             << detector->name() << ", " << detector->gl_info().context << (skip == Skip::kOn ? ", skipping" : "");
@@ -77,7 +84,7 @@ TEST(MappedSurface, GivesTheSameBitsFromTheCpuAndFromTheSlowTruth) {
   EXPECT_GT(truth.contacts(), 10U);
   EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *cpu)), hash_of(truth));
   for (const Skip skip : {Skip::kOff, Skip::kOn}) {
-    for (const auto make : {make_geometry_detector, make_compute_detector}) {
+    for (const auto make : {make_geometry_detector, make_compute_detector, make_compute_that_culls}) {
       const auto detector = make(test::make_context(), builtin_avatar(), builtin_map(),
                                  {Surface::kMapped, kHashedPlanes, Method::kCcd, skip});
       EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *detector)), hash_of(truth)) << detector->name();

@@ -20,14 +20,16 @@ namespace {
 
 constexpr std::uint32_t kCollidersOfEach = 20;
 
-enum class ContextSharer { kPaper, kGeometry, kSkippingGeometry, kCompute };
+enum class ContextSharer { kPaper, kGeometry, kSkippingGeometry, kCompute, kCullingCompute };
 
 std::unique_ptr<Detector> make_sharer(ContextSharer kind, std::shared_ptr<GlContext> context, const Avatar& avatar) {
   if (kind == ContextSharer::kPaper)
     return make_paper_detector(std::move(context), avatar, test::builtin_map(), {.planes = kHashedPlanes});
-  if (kind == ContextSharer::kCompute)
+  if (kind == ContextSharer::kCompute || kind == ContextSharer::kCullingCompute)
     return make_compute_detector(std::move(context), avatar, test::builtin_map(),
-                                 {.planes = kHashedPlanes, .skip = Skip::kOn});
+                                 {.planes = kHashedPlanes,
+                                  .skip = Skip::kOn,
+                                  .culling = kind == ContextSharer::kCompute ? Culling::kCpu : Culling::kGpu});
   return make_geometry_detector(
       std::move(context), avatar, test::builtin_map(),
       {.planes = kHashedPlanes, .skip = kind == ContextSharer::kGeometry ? Skip::kOff : Skip::kOn});
@@ -48,8 +50,8 @@ TEST(SharedContext, ChangesNoBitForDetectorsThatTakeTurns) {
   const std::vector<TraceFrame> rain = test::scene("rain", finer, kCollidersOfEach, 12, 15);
   const std::shared_ptr<GlContext> context = test::make_context();
   std::vector<SharedAndOwn> pairs;
-  for (const ContextSharer kind :
-       {ContextSharer::kGeometry, ContextSharer::kPaper, ContextSharer::kSkippingGeometry, ContextSharer::kCompute})
+  for (const ContextSharer kind : {ContextSharer::kGeometry, ContextSharer::kPaper, ContextSharer::kSkippingGeometry,
+                                   ContextSharer::kCompute, ContextSharer::kCullingCompute})
     for (const bool is_finer : {false, true}) {
       const Avatar& skin = is_finer ? finer : avatar;
       pairs.push_back({make_sharer(kind, context, skin), make_sharer(kind, test::make_context(), skin),
