@@ -43,7 +43,7 @@ struct DetectorWork {
   std::uint64_t triangles_tested = 0;  ///< triangles that were tested at least once
   std::uint64_t pairs_captured = 0;    ///< pairs that the shaders could not reject
   std::uint64_t pairs_meeting = 0;     ///< pairs that really meet (counted by `geometry` and `cpu`)
-  std::uint64_t meshlets_skinned = 0;  ///< by CPU or GPU; 0 if the detector skinned the whole mesh
+  std::uint64_t meshlets_skinned = 0;  ///< by CPU or GPU: 0 if the detector skinned the whole mesh
   std::uint64_t frames_skipped = 0;    ///< 1 if the bounds alone proved that nothing can meet
   std::uint64_t part_pairs = 0;        ///< pairs of a collider in reach and a part of the skin (with skipping)
   std::uint64_t pairs_spared = 0;      ///< of them, pairs not looked at, as an earlier frame had proven them apart

@@ -65,7 +65,8 @@ struct Box {
 
 void include(inout Box box, mat4x3 matrix, RestBox rest) {
   vec3 centre = matrix[0] * rest.centre.x + matrix[1] * rest.centre.y + matrix[2] * rest.centre.z + matrix[3];
-  vec3 extent = abs(matrix[0]) * rest.half_extent.x + abs(matrix[1]) * rest.half_extent.y + abs(matrix[2]) * rest.half_extent.z;
+  vec3 extent = abs(matrix[0]) * rest.half_extent.x + abs(matrix[1]) * rest.half_extent.y +
+                abs(matrix[2]) * rest.half_extent.z;
   box.low = min(box.low, centre - extent);
   box.high = max(box.high, centre + extent);
 }
