@@ -75,12 +75,7 @@ class RunningSweep {
  public:
   RunningSweep(const std::vector<std::uint32_t>& ids, std::span<const SweptPerson> people, SweepSample sample,
                const std::vector<Contestant>& contestants, const SweepSettings& settings)
-      : ids_(ids),
-        people_(people),
-        contestants_(contestants),
-        settings_(settings),
-        place_count_(sample.places.size()),
-        random_(settings.seed) {
+      : ids_(ids), people_(people), contestants_(contestants), settings_(settings), place_count_(sample.places.size()) {
     sweep_.places = static_cast<std::uint32_t>(place_count_);
     if (place_count_ != 0) sweep_.place_frames = static_cast<std::uint32_t>(sample.places.front().size() - 1);
     sweep_.sample_sha256 = sample.sha256;
@@ -91,7 +86,9 @@ class RunningSweep {
   }
 
   Sweep run(const std::function<bool(double)>& progress) {
-    std::vector<Entry> open = entries();
+    std::vector<Entry> open;
+    for (std::size_t s = 0; s < sweep_.series.size(); ++s)
+      for (std::size_t p = 0; p < settings_.counts.size(); ++p) open.push_back({s, p});
     for (std::size_t s = 0; s < sweep_.series.size(); ++s) {
       if (!progress(0)) return std::move(sweep_);
       racers_[s].reference = make_reference(s);
@@ -101,22 +98,24 @@ class RunningSweep {
       if (!progress(0)) return std::move(sweep_);
       warm_up(entry);
     }
-    std::ranges::shuffle(open, random_);
+    std::mt19937_64 random(settings_.seed);
+    std::ranges::shuffle(open, random);
     for (const Entry& entry : open) {
       if (!progress(0)) return std::move(sweep_);
       measure_cold(entry);
     }
 
-    const double share = settings_.in_flight == 0 ? 1 : 0.5;
-    const auto turn = [&](const Entry& entry) {
-      return racers_[entry.series].renderer == nullptr ? measure(entry) : measure_rendered(entry);
-    };
-    if (!take_turns(&SweepPoint::repetitions, turn, [&](double done) { return progress(share * done); }))
-      return std::move(sweep_);
-    const auto measure_span = [&](const Entry& entry) { return measure_throughput(entry); };
-    if (settings_.in_flight != 0 &&
-        !take_turns(&SweepPoint::spanned, measure_span, [&](double done) { return progress(share + share * done); }))
-      return std::move(sweep_);
+    std::vector<Turn> turns = turns_of(open);
+    const double total_s = settings_.min_time_s * static_cast<double>(turns.size());
+    double spent_s = 0;
+    while (!turns.empty()) {
+      std::ranges::shuffle(turns, random);
+      for (const Turn& turn : turns) {
+        spent_s += std::min(take(turn), settings_.min_time_s);
+        if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return std::move(sweep_);
+      }
+      std::erase_if(turns, [&](const Turn& turn) { return is_measured(point_of(turn.entry).*turn.passes); });
+    }
     if (settings_.stages) measure_stages(progress);
     return std::move(sweep_);
   }
@@ -126,6 +125,11 @@ class RunningSweep {
     std::size_t series;
     std::size_t point;
   };
+  /// A point, and which of its passes are measured: one frame after another, or spans of frames.
+  struct Turn {
+    Entry entry;
+    std::vector<Repetition> SweepPoint::*passes;
+  };
   /// Where a timed row comes from.
   struct RowPlace {
     Entry entry;
@@ -134,31 +138,20 @@ class RunningSweep {
     std::size_t person;
   };
 
-  std::vector<Entry> entries() const {
-    std::vector<Entry> all;
-    for (std::size_t s = 0; s < sweep_.series.size(); ++s)
-      for (std::size_t p = 0; p < settings_.counts.size(); ++p) all.push_back({s, p});
-    return all;
+  std::vector<Turn> turns_of(const std::vector<Entry>& entries) const {
+    std::vector<Turn> turns;
+    for (const Entry& entry : entries) {
+      turns.push_back({entry, &SweepPoint::repetitions});
+      if (settings_.in_flight != 0 && racers_[entry.series].renderer == nullptr)
+        turns.push_back({entry, &SweepPoint::spanned});
+    }
+    return turns;
   }
 
-  /// Measures all points in turn, in rounds of a random order, until each is measured. `measure` adds to the `passes`
-  /// of a point and returns the seconds timed. Returns false if stopped.
-  template <typename Measure, typename Report>
-  bool take_turns(std::vector<Repetition> SweepPoint::*passes, Measure measure, Report progress) {
-    std::vector<Entry> open = entries();
-    if (passes == &SweepPoint::spanned)
-      std::erase_if(open, [&](const Entry& entry) { return racers_[entry.series].renderer != nullptr; });
-    const double total_s = settings_.min_time_s * static_cast<double>(open.size());
-    double spent_s = 0;
-    while (!open.empty()) {
-      std::ranges::shuffle(open, random_);
-      for (const Entry& entry : open) {
-        spent_s += std::min(measure(entry), settings_.min_time_s);
-        if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return false;
-      }
-      std::erase_if(open, [&](const Entry& entry) { return is_measured(point_of(entry).*passes); });
-    }
-    return true;
+  /// Returns the seconds timed.
+  double take(const Turn& turn) {
+    if (turn.passes == &SweepPoint::spanned) return measure_throughput(turn.entry);
+    return racers_[turn.entry.series].renderer == nullptr ? measure(turn.entry) : measure_rendered(turn.entry);
   }
 
   SweepPoint& point_of(const Entry& entry) { return sweep_.series[entry.series].points[entry.point]; }
@@ -423,7 +416,6 @@ class RunningSweep {
   SweepScene recorded_;
   std::map<std::pair<std::uint32_t, bool>, std::unique_ptr<SweepScene>> copied_;  // by copies and first_only
   std::vector<Racer> racers_;
-  std::mt19937_64 random_;
   Sweep sweep_;
 };
 

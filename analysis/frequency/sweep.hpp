@@ -50,7 +50,7 @@ struct SweepSettings {
   double min_time_s = 1;              ///< least time for every point; the places are repeated until then
   std::uint64_t seed = 1;             ///< seed of the drawn colliders and of the random order
   bool stages = false;                ///< afterwards, measure where the time goes (`measure_stages`)
-  /// Afterwards, measure the throughput with this number of frames in flight. 0: do not. Not beside a renderer.
+  /// Also measure the throughput with this number of frames in flight. 0: do not. Not beside a renderer.
   std::uint32_t in_flight = 0;
 };
 
@@ -131,7 +131,8 @@ struct Sweep {
 /// that the renderer's 90 Hz take effect. Outside of these stretches, the scene is not drawn. Precondition: the trace
 /// then has one person, and the crowd one copy.
 ///
-/// Throughput is measured in passes of its own, over the same frames: spans of frames are given to the detector at once
+/// Throughput is measured in passes of its own, over the same frames and in the same rounds: spans of frames are given
+/// to the detector at once
 /// (`Detector::detect_all`). Building those frames belongs to the time.
 ///
 /// Every timed row is compared with a reference: a row that was computed separately, with all planes that the hash
