@@ -68,6 +68,12 @@ class CopiedIds {
   std::uint32_t copies_;
 };
 
+/// `ids` are ascending.
+void keep_only(const DrawnIds& ids, TraceFrame& frame) {
+  std::erase_if(frame.colliders, [&](const ColliderSample& one) { return !std::ranges::binary_search(ids, one.id); });
+  frame.colliders.shrink_to_fit();
+}
+
 TraceFrame with_copies(const TraceFrame& frame, std::uint32_t people, const CopiedIds& ids, double apart_m) {
   const auto shift_m = [apart_m](std::uint32_t copy) { return glm::dvec3(apart_m * copy, 0, 0); };
   TraceFrame copied;
@@ -104,6 +110,8 @@ SweepScene make_sweep_scene(std::vector<Place> places, std::span<const std::uint
       scene.drawn_for_any[i] = std::move(both);
     }
   }
+  for (std::size_t i = 0; i < scene.places.size(); ++i)
+    for (TraceFrame& frame : scene.places[i]) keep_only(scene.drawn_for_any[i], frame);
   return scene;
 }
 

@@ -26,7 +26,8 @@ struct SweepScene {
   std::vector<DrawnIds> drawn_for_any;       ///< by place: those drawn for any count
 };
 
-/// Draws, from all colliders of the trace, those for each count (`draw_colliders`).
+/// Draws, from all colliders of the trace, those for each count (`draw_colliders`). The places lose the colliders that
+/// are drawn for no count: looking them up in every frame would cost time.
 SweepScene make_sweep_scene(std::vector<Place> places, std::span<const std::uint32_t> ids,
                             const std::vector<std::uint32_t>& counts, std::uint64_t seed);
 

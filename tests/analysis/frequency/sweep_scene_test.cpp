@@ -57,6 +57,14 @@ TEST_F(CrowdOfThree, HasThreeTimesTheContactsIfEachHasColliders) {
   EXPECT_THAT(contacts_of(first, first.drawn[1][0]), ElementsAre(one, 0U, 0U));
 }
 
+TEST_F(CrowdOfThree, ComesFromASceneWithoutCollidersThatAreNeverDrawn) {
+  const SweepScene fewer = make_sweep_scene({frames_}, ids_, {5}, 1);
+  for (const TraceFrame& frame : fewer.places[0]) EXPECT_EQ(frame.colliders.size(), 5U);
+  const DrawnIds& drawn = recorded_.drawn[0][0];
+  EXPECT_EQ(fewer.drawn[0][0], drawn);
+  EXPECT_EQ(contacts_of(fewer, drawn), contacts_of(recorded_, drawn));
+}
+
 TEST_F(CrowdOfThree, IsFartherApartThanTheSceneIsWide) {
   // A second person, who would stand where the first's copy is 64 m away.
   SweepScene recorded = recorded_;
