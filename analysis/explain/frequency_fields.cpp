@@ -72,6 +72,8 @@ constexpr Field kPoint[] = {
     {"throughput_hz_high", "Hz", "high end of that interval"},
     {"in_flight", "", "number of frames that the detector was given at a time for throughput_hz"},
     {"rendered_hz", "Hz", "how often the scene was drawn meanwhile; only with a renderer"},
+    {"memory_bytes", "bytes",
+     "memory that a detector holds after its first frames, without a GPU's own; only of growth"},
     {"stages/*", "us",
      "time of a frame spent there, mean: pose, candidates, skinning, upload, draw, wait, read_back, "
      "test, decision; only with --stages"},
@@ -95,8 +97,10 @@ constexpr Field kFrameTimes[] = {
 
 constexpr Field kGrowth[] = {
     {"trace", "", "the trace that was measured"},
+    {"crowded_trace", "", "the trace for numbers of colliders that it lacks; null: none was needed"},
     {"complete", "", "false: interrupted"},
     {"colliders", "", "number of colliders on every size of avatar"},
+    {"frame_limit_s", "s", "a series whose mean frame took longer was left out of larger sizes"},
     {"by_triangles/triangles", "", "triangles of this size of avatar"},
     {"by_triangles/vertices", "", "vertices of this size of avatar"},
     {"by_triangles/frames", "", "distinct frames, which are measured repeatedly"},
@@ -122,6 +126,12 @@ constexpr Field kCrossover[] = {
     {"at", "", "number of colliders, or of triangles, at which two lines cross"},
     {"cheaper_below", "", "the series that costs less below it"},
     {"cheaper_above", "", "the series that costs less above it"},
+};
+
+constexpr Field kLeftOut[] = {
+    {"series", "", "the series that was left out of the larger sizes"},
+    {"above", "", "number of colliders, or of triangles: the last size at which it was measured"},
+    {"frame_s", "s", "mean of a frame there"},
 };
 
 constexpr Field kCompare[] = {
@@ -175,6 +185,8 @@ FieldGroups growth_fields() {
           {"by_triangles/series", kSeries},
           {"by_triangles/series/points", kPoint},
           {"by_triangles/series/gl", gl_fields()},
+          {"left_out/colliders", kLeftOut},
+          {"left_out/triangles", kLeftOut},
           {"crossovers/colliders", kCrossover},
           {"crossovers/triangles", kCrossover},
           {"avatar", avatar_fields()},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/frequency/detector_memory.hpp"
 #include "analysis/frequency/sweep_report.hpp"
 #include "traces/scene/subdivision.hpp"
 
@@ -33,6 +34,64 @@ ActuatorMap subdivided(const ActuatorMap& map) {
   return fine;
 }
 
+/// Measures one size after another. A contestant whose frame took longer than the limit is left out of those that
+/// follow.
+class GrowingRace {
+ public:
+  GrowingRace(const ContestantMaker& survey, const std::vector<Contestant>& contestants, double frame_limit_s)
+      : survey_(survey),
+        contestants_(contestants),
+        frame_limit_us_(1e6 * frame_limit_s),
+        latest_(contestants.size()),
+        too_slow_(contestants.size()) {}
+
+  /// `settings` have one count. The sweep has a series of one point for each contestant.
+  Sweep measure(TraceReader& trace, const SweptPerson& person, const SweepSettings& settings,
+                const std::function<bool(double)>& progress) {
+    std::vector<std::size_t> places;
+    std::vector<Contestant> racing;
+    for (std::size_t i = 0; i < contestants_.size(); ++i) {
+      if (too_slow_[i]) continue;
+      places.push_back(i);
+      racing.push_back(contestants_[i]);
+    }
+    Sweep sweep;
+    if (!racing.empty()) sweep = run_sweep(trace, {&person, 1}, survey_, racing, settings, progress);
+    const SweepScene scene = first_frames(trace, settings);
+    for (SweepSeries& series : latest_) series.points.assign(1, blank_point(settings.counts.front()));
+    for (std::size_t i = 0; i < racing.size(); ++i) {
+      SweepSeries& series = latest_[places[i]] = std::move(sweep.series[i]);
+      SweepPoint& point = series.points.front();
+      if (progress(1)) point.memory_bytes = detector_memory_bytes(racing[i], person, scene);
+      too_slow_[places[i]] = point.mean_us() > frame_limit_us_;
+    }
+    sweep.series = latest_;
+    return sweep;
+  }
+
+ private:
+  static SweepPoint blank_point(std::uint32_t colliders) {
+    SweepPoint point;
+    point.colliders = colliders;
+    return point;
+  }
+
+  static SweepScene first_frames(TraceReader& trace, const SweepSettings& settings) {
+    constexpr std::size_t kFrames = 3;
+    Place place;
+    TraceFrame frame;
+    trace.rewind();
+    while (place.size() < kFrames && trace.next(frame)) place.push_back(frame);
+    return make_sweep_scene({std::move(place)}, trace.collider_ids(), settings.counts, settings.seed);
+  }
+
+  const ContestantMaker& survey_;
+  const std::vector<Contestant>& contestants_;
+  double frame_limit_us_;
+  std::vector<SweepSeries> latest_;
+  std::vector<bool> too_slow_;
+};
+
 /// Appends the single point of each series of `more` to the series of `all`.
 void append(std::vector<SweepSeries>& all, std::vector<SweepSeries> more) {
   if (all.empty()) {
@@ -44,10 +103,11 @@ void append(std::vector<SweepSeries>& all, std::vector<SweepSeries> more) {
 
 }  // namespace
 
-Growth run_growth(TraceReader& trace, SweptPerson person, const ContestantMaker& survey,
+Growth run_growth(GrowthTraces traces, SweptPerson person, const ContestantMaker& survey,
                   const std::vector<Contestant>& contestants, const GrowthSettings& settings,
                   const std::function<bool(double)>& progress) {
   Growth growth;
+  growth.frame_limit_s = settings.frame_limit_s;
   bool goes_on = true;
   const double steps = static_cast<double>(settings.sweep.counts.size()) + settings.subdivisions + 1;
   double step = 0;
@@ -55,15 +115,16 @@ Growth run_growth(TraceReader& trace, SweptPerson person, const ContestantMaker&
     goes_on = goes_on && progress((step + share) / steps);
     return goes_on;
   };
+  GrowingRace along_colliders(survey, contestants, settings.frame_limit_s);
   for (const std::uint32_t count : settings.sweep.counts) {
     if (!goes_on) return growth;
-    append(growth.by_colliders, run_sweep(trace, {&person, 1}, survey, contestants,
-                                          settings_for(settings, person.avatar, count), step_progress)
-                                    .series);
+    const SweepSettings sweep = settings_for(settings, person.avatar, count);
+    append(growth.by_colliders, along_colliders.measure(traces.with(count), person, sweep, step_progress).series);
     ++step;
   }
   Avatar fine = person.avatar;
   ActuatorMap fine_map = person.map;
+  GrowingRace along_triangles(survey, contestants, settings.frame_limit_s);
   const SweptPerson fine_person = {fine, fine_map};
   for (std::uint32_t level = 0; goes_on && level <= settings.subdivisions; ++level) {
     if (level > 0) {
@@ -71,7 +132,7 @@ Growth run_growth(TraceReader& trace, SweptPerson person, const ContestantMaker&
       fine_map = subdivided(fine_map);
     }
     const SweepSettings sweep = settings_for(settings, fine, settings.colliders);
-    Sweep measured = run_sweep(trace, {&fine_person, 1}, survey, contestants, sweep, step_progress);
+    Sweep measured = along_triangles.measure(traces.with(settings.colliders), fine_person, sweep, step_progress);
     growth.by_triangles.push_back({fine.triangles.size(), fine.position_bind.size(),
                                    measured.places * measured.place_frames, std::move(measured.series)});
     ++step;
@@ -84,6 +145,14 @@ std::vector<double> mean_us(const SweepSeries& series) {
   us.reserve(series.points.size());
   for (const SweepPoint& point : series.points) us.push_back(point.mean_us());
   return us;
+}
+
+std::vector<LeftOut> left_out(std::span<const double> sizes, std::span<const CostLine> lines, double frame_limit_s) {
+  std::vector<LeftOut> found;
+  for (const CostLine& line : lines)
+    for (std::size_t i = 0; i + 1 < sizes.size(); ++i)
+      if (line.us[i] > 1e6 * frame_limit_s) found.push_back({line.name, sizes[i], line.us[i] / 1e6});
+  return found;
 }
 
 /// Difference of logarithms: two per cent.

@@ -24,11 +24,25 @@ struct GrowthSettings {
   SweepSettings sweep;             ///< `counts`: numbers of colliders on the given avatar
   std::uint32_t subdivisions = 4;  ///< the largest avatar has 4^subdivisions as many triangles
   std::uint32_t colliders = 100;   ///< number of colliders on every size
+  double frame_limit_s = 1;        ///< as in Growth
 };
 
+/// The traces to measure on.
+struct GrowthTraces {
+  TraceReader& usual;
+  TraceReader& crowded;  ///< for numbers of colliders that `usual` lacks; may be the same
+
+  TraceReader& with(std::uint32_t colliders) const {
+    return usual.collider_ids().size() >= colliders ? usual : crowded;
+  }
+};
+
+/// At each size, all series are in the same order. A point is empty if the series was left out of that size.
 struct Growth {
   std::vector<SweepSeries> by_colliders;
   std::vector<GrowthSize> by_triangles;
+  /// A contestant whose mean frame took longer is left out of the larger sizes.
+  double frame_limit_s = 0;
 };
 
 /// Above this number of collider-triangle pairs in a frame, a frame may take seconds. Then only single frames at three
@@ -37,8 +51,9 @@ inline constexpr std::uint64_t kManyPairs = 500'000;
 
 /// Measures the cost against colliders on the avatar, then against triangles on subdivisions of the avatar. Within one
 /// size (of colliders or of triangles), all contestants take turns. The sizes follow one another, since the largest
-/// fill the memory. `survey` and `progress` are used as in `run_sweep`.
-Growth run_growth(TraceReader& trace, SweptPerson person, const ContestantMaker& survey,
+/// fill the memory. After each size, it measures the memory of its detectors. `survey` and `progress` are used as in
+/// `run_sweep`.
+Growth run_growth(GrowthTraces traces, SweptPerson person, const ContestantMaker& survey,
                   const std::vector<Contestant>& contestants, const GrowthSettings& settings,
                   const std::function<bool(double)>& progress);
 
@@ -57,6 +72,16 @@ struct CostLine {
   std::string name;
   std::vector<double> us;  ///< at each of `sizes`; above 0, or NaN
 };
+
+/// A line that ends before the largest size, since its frames became too slow.
+struct LeftOut {
+  std::string name;
+  double size = 0;  ///< the last that was measured
+  double frame_s = 0;
+};
+
+/// Returns the lines that are slower than the limit at a size other than the largest.
+std::vector<LeftOut> left_out(std::span<const double> sizes, std::span<const CostLine> lines, double frame_limit_s);
 
 /// Returns every crossing of two lines. Lines are straight between the `sizes` (ascending, above 0) on logarithmic
 /// axes. A crossing does not count if the two lines cost the same within 2 % at the size before it.

@@ -78,6 +78,9 @@ struct SweepPoint {
   std::uint64_t rendered_frames = 0;  ///< frames of the scene drawn during the measurement
   double rendered_s = 0;              ///< duration of that drawing
 
+  /// What `detector_memory_bytes` returned, where it was asked.
+  std::optional<std::uint64_t> memory_bytes;
+
   StageMeans stages;  ///< empty unless asked for, and beside a renderer
 
   /// Passes of their own, in which the detectors are given spans of `in_flight` frames. Empty unless asked for, and

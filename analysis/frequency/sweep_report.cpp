@@ -285,6 +285,7 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
         point["throughput_hz_high"] = number_or_null(interval.high);
         point["in_flight"] = one.points[p].in_flight;
       }
+      if (one.points[p].memory_bytes) point["memory_bytes"] = *one.points[p].memory_bytes;
       point.update(to_json(one.points[p].stages));
       points.push_back(std::move(point));
     }
@@ -401,13 +402,14 @@ std::vector<std::string> disagreements(std::span<const SweepSeries> series) {
   std::vector<std::string> found;
   for (const SweepSeries& one : series) {
     if (!promises_same_bits(one.detector)) continue;
-    const auto first = std::ranges::find_if(
-        series, [&](const SweepSeries& other) { return promises_same_bits(other.detector) && other.same_crowd(one); });
     for (std::size_t p = 0; p < one.points.size(); ++p) {
-      const std::string& expected = first->points[p].texture_hash;
       const std::string& hash = one.points[p].texture_hash;
-      // Empty: the run was stopped before the hash was computed.
-      if (!hash.empty() && !expected.empty() && hash != expected)
+      // Empty: the run was stopped before the hash was computed, or the point was left out.
+      if (hash.empty()) continue;
+      const auto first = std::ranges::find_if(series, [&](const SweepSeries& other) {
+        return promises_same_bits(other.detector) && other.same_crowd(one) && !other.points[p].texture_hash.empty();
+      });
+      if (hash != first->points[p].texture_hash)
         found.push_back(
             fmt::format("with {} colliders, '{}' and '{}' gave different contacts, but both must give the same",
                         one.points[p].colliders, name_of(*first), name_of(one)));

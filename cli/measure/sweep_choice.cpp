@@ -57,7 +57,7 @@ std::string prepare_sweep(const SweepChoice& choice, std::vector<std::string> re
   check_outputs(results, {choice.trace}, choice.common);
   catch_interrupts();
   if (new_trace.empty()) return choice.trace;
-  record_default_trace(new_trace, colliders, choice.common, invocation);
+  record_default_trace(new_trace, {colliders}, choice.common, invocation);
   return new_trace;
 }
 

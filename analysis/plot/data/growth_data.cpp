@@ -15,6 +15,7 @@ constexpr std::string_view kRemedy = "name a folder that 'vestige growth' wrote,
 
 /// What an axis can show; nothing real lies outside.
 constexpr double kMostSize = 1e10;
+constexpr double kMostFrame_s = 1e6;
 constexpr double kLeastHz = 1e-6;
 constexpr double kMostHz = 1e12;
 
@@ -36,6 +37,17 @@ void add(GrowthPanel& panel, std::size_t index, const JsonField& series, const G
   GrowthLine& line = panel.lines[index];
   if (line.detector.empty()) line = read_line(series);
   line.points.push_back(point);
+}
+
+/// Adds a sentence for each series that was not measured at the largest sizes. Older files have no such list.
+void add_left_out(const JsonField& document, const char* along, std::string& legend) {
+  if (!document.has("left_out")) return;
+  const JsonField all = document.at("left_out").at(along);
+  if (all.value().empty()) return;
+  for (std::size_t i = 0; i < all.count(); ++i)
+    legend += fmt::format(" '{}' is not measured above {:.0f} {}: a frame took {:.2g} s there.",
+                          all.at(i).at("series").text(), all.at(i).at("above").within(1, kMostSize), along,
+                          all.at(i).at("frame_s").within(0, kMostFrame_s));
 }
 
 void finish(GrowthPanel& panel) {
@@ -72,8 +84,10 @@ GrowthResult read_growth(const std::filesystem::path& folder) {
   for (std::size_t i = 0; i < sizes.count(); ++i) {
     const double triangles = sizes.at(i).at("triangles").within(1, kMostSize);
     const JsonField series = sizes.at(i).at("series");
-    for (std::size_t s = 0; s < series.count(); ++s)
-      add(by_triangles, s, series.at(s), {triangles, us_of(series.at(s).at("points").at(std::size_t{0}))});
+    for (std::size_t s = 0; s < series.count(); ++s) {
+      const JsonField points = series.at(s).at("points");
+      if (!points.value().empty()) add(by_triangles, s, series.at(s), {triangles, us_of(points.at(std::size_t{0}))});
+    }
   }
   finish(by_colliders);
   finish(by_triangles);
@@ -83,6 +97,8 @@ GrowthResult read_growth(const std::filesystem::path& folder) {
   result.avatar = phrase(document.at("avatar"), {{"triangles", " triangles"}, {"vertices", " vertices"}});
   by_colliders.title = result.avatar;
   result.legend = "Triangles: those of the avatar, each split into four repeatedly.";
+  add_left_out(document, "colliders", result.legend);
+  add_left_out(document, "triangles", result.legend);
   result.commit = commit_of(document);
   return result;
 }

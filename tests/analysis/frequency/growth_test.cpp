@@ -27,6 +27,18 @@ TEST(Crossovers, AreNoneBetweenLinesThatKeepTheirOrderOrWereNotMeasured) {
   EXPECT_TRUE(crossovers(sizes, std::vector<CostLine>{{"a", {1, nan, 5}}, {"b", {2, 3, 4}}}).empty());
 }
 
+TEST(LeftOut, NamesTheLastSizeOfALineThatWasTooSlowForLargerOnes) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> sizes = {10, 100, 1000};
+  const std::vector<CostLine> lines = {
+      {"slow", {1e3, 3e6, nan}}, {"fast", {1, 2, 3}}, {"slow at the end", {1, 2, 3e6}}, {"stopped", {1, 2, nan}}};
+  const std::vector<LeftOut> found = left_out(sizes, lines, 0.5);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].name, "slow");
+  EXPECT_EQ(found[0].size, 100);
+  EXPECT_NEAR(found[0].frame_s, 3, 1e-9);
+}
+
 SweepPoint point(double us, std::uint64_t frames, std::uint64_t pairs) {
   SweepPoint point;
   point.colliders = 7;
@@ -78,8 +90,10 @@ TEST(Disagreements, AreSaidOfDetectorsThatPromiseTheSameBitsAndOfNoOthers) {
   EXPECT_TRUE(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).empty());
   geometry.points[0].texture_hash = other;
   EXPECT_EQ(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).size(), 1U);
-  geometry.points[0].texture_hash.clear();  // stopped before it was known
-  EXPECT_TRUE(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).empty());
+  SweepSeries left_out = cpu;
+  left_out.points[0].texture_hash.clear();  // or stopped before it was known
+  EXPECT_EQ(disagreements(std::vector<SweepSeries>{left_out, cpu, geometry}).size(), 1U);
+  EXPECT_TRUE(disagreements(std::vector<SweepSeries>{paper, left_out, geometry}).empty());
 }
 
 }  // namespace

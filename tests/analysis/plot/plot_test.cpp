@@ -127,15 +127,20 @@ constexpr const char* kGrowth = R"({
       {"detector": "cpu", "context": "", "skip": "on", "points": [{"colliders": 100, "hz": 16000}]}]},
     {"triangles": 20000, "series": [
       {"detector": "cpu", "context": "", "skip": "off", "points": [{"colliders": 100, "hz": 60}]},
-      {"detector": "cpu", "context": "", "skip": "on", "points": [{"colliders": 100, "hz": 9000}]}]}]})";
+      {"detector": "cpu", "context": "", "skip": "on", "points": [{"colliders": 100, "hz": 9000}]}]},
+    {"triangles": 80000, "series": [
+      {"detector": "cpu", "context": "", "skip": "off", "points": []},
+      {"detector": "cpu", "context": "", "skip": "on", "points": [{"colliders": 100, "hz": 8000}]}]}],
+  "left_out": {"colliders": [], "triangles": [{"series": "cpu", "above": 20000, "frame_s": 3.14}]}})";
 
 TEST_F(PlotTest, AGrowthFigureNamesItsLinesAndWhatTheyRunAlong) {
   write_text(folder_ / "growth.json", kGrowth);
   const Outcome outcome = run("growth .");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   const std::string words = words_of(folder_ / "growth.svg");
-  for (const char* expected : {"cpu, no skipping", "cpu", "Number of colliders", "Number of triangles", "100 colliders",
-                               "Cost of a frame", "Fast & Cool 9000", "0123456789", "5000 triangles"})
+  for (const char* expected :
+       {"cpu, no skipping", "cpu", "Number of colliders", "Number of triangles", "100 colliders", "Cost of a frame",
+        "Fast & Cool 9000", "0123456789", "5000 triangles", "not measured above 20000 triangles"})
     EXPECT_THAT(words, HasSubstr(expected));
   EXPECT_LT(read_png(folder_ / "growth.png").height, 1500U);
 }

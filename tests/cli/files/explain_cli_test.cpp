@@ -115,6 +115,9 @@ TEST_F(Explain, KnowsEveryNameThatMeasurementsWrite) {
   must_run("vestige growth small.mcap --counts 1,3 --count 3 --subdivisions 1 --detector cpu --skip on,off -o growth" +
            quick);
   must_run(
+      "vestige growth small.mcap --counts 1,3 --count 3 --subdivisions 1 --detector cpu --frame-limit 1e-9 -o slow" +
+      quick);
+  must_run(
       "vestige accuracy --detector cpu,paper,decimated --method static --colliders swarm --count 20 --duration 0.2 "
       "--rate 90 --events 1 --check-frames 10 --no-figure -o accuracy --json accuracy.json -q");
   must_run("vestige stress --families vertex --detector cpu,paper --n 10 --no-figure -o stress --json stress.json -q");

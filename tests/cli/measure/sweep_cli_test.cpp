@@ -353,6 +353,53 @@ TEST_F(GrowthCommandLine, MeasuresCollidersAndTrianglesAndWhatSkippingSaves) {
   expect_failure("vestige growth small.mcap --subdivisions 9 -o h", 2, {"--subdivisions"});
 }
 
+TEST_F(GrowthCommandLine, SaysHowMuchMemoryADetectorHolds) {
+  record_small();
+  const test::Outcome growth =
+      run("vestige growth small.mcap --detector cpu --skip on --counts 20 --count 20 --subdivisions 2 --min-time 0.01 "
+          "--runs 1 --run-frames 3 --no-figure -o g");
+  ASSERT_EQ(growth.exit_code, 0) << growth.standard_error;
+  EXPECT_THAT(growth.standard_output, HasSubstr("Memory that each detector holds:"));
+  const auto sizes = json_in("g/growth.json")["by_triangles"];
+  const auto bytes = [&](std::size_t level) {
+    return sizes[level]["series"][0]["points"][0].value("memory_bytes", 0.0);
+  };
+  EXPECT_GT(bytes(0), 4998 * 3 * 2);  // more than its triangles' indices
+  EXPECT_GT(bytes(2), 4 * bytes(0));
+}
+
+TEST_F(GrowthCommandLine, LeavesWhatIsTooSlowOutOfLargerSizes) {
+  record_small();
+  const test::Outcome growth =
+      run("vestige growth small.mcap --detector cpu --counts 2,20 --count 5 --subdivisions 1 --min-time 0.01 --runs 1 "
+          "--run-frames 3 --frame-limit 1e-9 -o g");
+  ASSERT_EQ(growth.exit_code, 0) << growth.standard_error;
+  EXPECT_THAT(growth.standard_output, AllOf(HasSubstr("'cpu, skip on' is not measured above 2 colliders: a frame took"),
+                                            HasSubstr("'cpu' is not measured above 4998 triangles: a frame took")));
+  const auto json = json_in("g/growth.json");
+  EXPECT_EQ(json["frame_limit_s"], 1e-9);
+  for (const auto& series : json["by_colliders"]["series"]) EXPECT_EQ(series["points"].size(), 1U);
+  ASSERT_EQ(json["by_triangles"].size(), 2U);
+  for (const auto& series : json["by_triangles"][1]["series"]) EXPECT_EQ(series["points"].size(), 0U);
+  ASSERT_EQ(json["left_out"]["triangles"].size(), 2U);
+  EXPECT_EQ(json["left_out"]["colliders"][0]["above"], 2);
+}
+
+TEST_F(GrowthCommandLine, RecordsAShortTraceForCrowds) {
+  const test::Outcome growth =
+      run("vestige growth --detector cpu --skip on --counts 10,1200 --count 10 --subdivisions 0 --min-time 0.01 "
+          "--runs 1 --run-frames 2 --no-figure -o g -q");
+  ASSERT_EQ(growth.exit_code, 0) << growth.standard_error;
+  const auto json = json_in("g/growth.json");
+  EXPECT_EQ(json["crowded_trace"], "g/crowded.mcap");
+  const auto points = json["by_colliders"]["series"][0]["points"];
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[1]["colliders"], 1200);
+  EXPECT_GT(points[1]["contacts"], 0);
+  expect_failure("vestige growth g/trace.mcap --counts 1001 --count 1 -o h", 1, {"1001", "1000"});
+  expect_failure("vestige growth g/crowded.mcap --counts 1201 --count 1 -o h", 1, {"1201", "1200"});
+}
+
 TEST_F(GrowthCommandLine, SplitsAMapOfTrianglesWithThem) {
   ASSERT_EQ(run("vestige map make --layout torso16 --per-triangle -o vest.png -q && vestige record --colliders hug "
                 "--count 25 --rate 60 --duration 4 --map vest.png -o vest.mcap -q")
