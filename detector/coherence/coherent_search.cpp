@@ -104,11 +104,12 @@ bool CoherentSearch::begin(const DetectorFrame& frame, Method method) {
   last_index_ = frame.index;
   method_ = method;
   if (!goes_on || frame.index % kTryAgain == 0) is_fast_ = false;
-  if (!goes_on || frame.index % kRestart == 0) is_dense_ = false;
+  const bool is_new = !goes_on || frame.index % kRestart == 0;
+  if (is_new) is_dense_ = false;
   const float mean_step_m = all_steps_m / static_cast<float>(std::max<std::size_t>(steps.size(), 1));
   is_fast_ = is_fast_ || most_move_farther(frame.segments, kFast_m - mean_step_m);
-  if (is_fast_ || is_dense_) {
-    followers_.clear();  // so that the next frame does not follow
+  if (is_new || is_fast_ || is_dense_) {  // perhaps nobody asks for the frame after a new one
+    followers_.clear();                   // so that the next frame does not follow
     return false;
   }
   bounds_.begin(frame, method);
