@@ -201,8 +201,7 @@ TEST(CoherentWork, IsGivenUpUntilTheNextRestartWhereTooMuchIsNear) {
     return frames;
   };
   EXPECT_GT(frames_that_spare("swarm", 50, 1000).size(), 250U);
-  EXPECT_THAT(frames_that_spare("hug", 1000, 200),
-              ::testing::ElementsAre(3, 4, 5, 6, 7, 8, 9, 10, 258, 259, 260, 261));
+  EXPECT_THAT(frames_that_spare("hug", 1000, 200), ::testing::ElementsAre(3, 4, 5, 6, 7, 8, 9, 10, 258, 259, 260, 261));
 }
 
 TEST(CoherentWork, OfALargeMeshGoesDownTheTree) {
