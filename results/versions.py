@@ -15,7 +15,7 @@ import sys
 
 COMMIT = '333a0d68be18c32e8ba5e3c01921d7783b497aa1'  # the last one of version 0.1.0
 # detector, animation, frames a second, numbers of colliders
-CASES = [('cpu', 'idle', 1000, [1, 10, 40, 100, 400, 1000]), ('cpu', 'idle', 250, [100]), ('cpu', 'idle', 90, [100]),
+CASES = [('cpu', 'idle', 1000, [1, 10, 40, 100, 400, 1000, 100000]), ('cpu', 'idle', 250, [100]), ('cpu', 'idle', 90, [100]),
          ('cpu', 'idle', 60, [100]), ('cpu', 'walk', 1000, [10, 100, 1000]), ('cpu', 'walk', 60, [100]),
          ('geometry', 'idle', 1000, [10, 100, 1000])]
 SCENARIOS = ['swarm', 'hug']
@@ -54,8 +54,8 @@ def measure(program, detector, trace, frames, count):
 
 def compare(old, detector, animation, scenario, rate_hz, count):
     trace = WORK / 'trace.mcap'
-    duration_s = 2 if rate_hz == 1000 else 8
-    frames = duration_s * rate_hz
+    duration_s = 0.1 if count > 10000 else 2 if rate_hz == 1000 else 8
+    frames = round(duration_s * rate_hz)
     run(TODAY, 'record', '--animation', animation, '--colliders', scenario, '--count', count, '--rate', rate_hz,
         '--duration', duration_s, '--force', '-q', '-o', trace)
     turns = []
