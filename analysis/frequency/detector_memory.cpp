@@ -15,14 +15,14 @@ namespace {
 
 /// Returns the private memory of this process that is in RAM, less what malloc keeps for later. Asking malloc alone
 /// would miss Embree, which maps memory itself.
-std::uint64_t anonymous_bytes() {
+std::optional<std::uint64_t> anonymous_bytes() {
   ::malloc_trim(0);
   std::ifstream file("/proc/self/smaps_rollup");
   std::string word;
   while (file >> word && word != "Anonymous:") {
   }
   std::uint64_t kibibytes = 0;
-  file >> kibibytes;
+  if (!(file >> kibibytes)) return {};
   return 1024 * kibibytes;
 }
 
@@ -36,12 +36,15 @@ std::unique_ptr<Detector> used_detector(const Contestant& contestant, const Swep
 
 }  // namespace
 
-std::uint64_t detector_memory_bytes(const Contestant& contestant, const SweptPerson& person, const SweepScene& scene) {
+std::optional<std::uint64_t> detector_memory_bytes(const Contestant& contestant, const SweptPerson& person,
+                                                   const SweepScene& scene) {
   // The first makes drivers free what earlier detectors left.
   const std::unique_ptr<Detector> first = used_detector(contestant, person, scene);
-  const std::uint64_t before = anonymous_bytes();
+  const std::optional<std::uint64_t> before = anonymous_bytes();
   const std::unique_ptr<Detector> second = used_detector(contestant, person, scene);
-  return std::max(anonymous_bytes(), before) - before;
+  const std::optional<std::uint64_t> after = anonymous_bytes();
+  if (!before || !after) return {};
+  return std::max(*after, *before) - *before;
 }
 
 }  // namespace vestige

@@ -135,8 +135,7 @@ struct Sweep {
 /// then has one person, and the crowd one copy.
 ///
 /// Throughput is measured in passes of its own, over the same frames and in the same rounds: spans of frames are given
-/// to the detector at once
-/// (`Detector::detect_all`). Building those frames belongs to the time.
+/// to the detector at once (`Detector::detect_all`). Building those frames belongs to the time.
 ///
 /// Every timed row is compared with a reference: a row that was computed separately, with all planes that the hash
 /// needs and with all colliders that were drawn at this place for any count. If hits or actuators of the two rows
