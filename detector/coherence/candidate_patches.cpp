@@ -1,6 +1,7 @@
 #include "detector/coherence/candidate_patches.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace vestige {
@@ -69,6 +70,7 @@ void CandidatePatches::count_pairs() {
 }
 
 void CandidatePatches::skin_touched(const DetectorFrame& frame, std::size_t i) {
+  assert(i <= found_.places.size());
   if (i == found_.places.size()) found_.places.push_back(skin(frame, touched()[i].meshlet));
 }
 

@@ -24,8 +24,8 @@ namespace vestige {
 /// The broad phase of detectors that skip: finds which segments may meet which meshlets, and skins those. A pair that
 /// is not listed surely misses, bit for bit.
 ///
-/// While things move slowly, the search remembers what it proved, and the skin of an earlier frame proves much of this
-/// one. Otherwise each frame is searched from the top of the tree.
+/// Where it costs less, the search remembers what it proved, and the skin of an earlier frame proves much of this one.
+/// Elsewhere the tree is searched from the top.
 class CandidatePatches {
  public:
   /// Keeps references to `avatar` and `meshlets`.

@@ -29,7 +29,7 @@ constexpr std::uint64_t kAnewCost = 6000;
 constexpr std::uint64_t kColliderCost = 12;
 constexpr std::uint64_t kMeetingCost = 38;
 constexpr std::uint64_t kTouchedCost = 100;
-/// Frames after a restart over which both are compared.
+/// Frames after a restart before both are compared.
 constexpr std::uint64_t kWarmFrames = 8;
 
 /// Part boxes of this age are computed again.

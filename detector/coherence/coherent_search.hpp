@@ -44,7 +44,8 @@ class CoherentSearch {
 
   /// Finds the pairs of the frame that may meet, and some that are near. A pair that is not in `pairs` with `may_meet`
   /// surely misses, bit for bit. `ways` are the frame's.
-  /// Returns false, and forgets everything, if so much moves that looking at everything costs less.
+  /// Returns false, and forgets everything, where looking at everything costs less: in a frame that does not follow the
+  /// one before or that begins anew, while most of it moves far, and while too much is near.
   bool find(const DetectorFrame& frame, const Ways& ways, Method method);
 
   /// The pairs of the last `find`. Whoever knows a larger `gap_m` writes it there, before `learn`.
