@@ -36,7 +36,7 @@
 // are distances times the length of the normal.
 //
 // Skinned by cull.comp. Let E be `corner_error`, which bounds the error of each coordinate, and for `carried` also that
-// of a corner and m together (detector/detectors/gpu_culler.cpp). A box grows by E, and a slab by E |n|: its axis is
+// of a corner and m together (detector/proofs/gpu_culler.cpp). A box grows by E, and a slab by E |n|: its axis is
 // the same for all. For the volumes with the way let r be the largest coordinate of the box that has grown. A product of
 // two corners' coordinates errs by 2 E r. Six of them, times the way's, err by 12 E r; the margin is 16 E r. The height,
 // a product of three corners, would err by far more. A slab along the normal takes its place, at rest, relative to the
@@ -93,12 +93,14 @@ const float corner_error = 0.0;
 #endif
 // For each meshlet, now and, except for `static`, before: coordinate x, y, z of corner a, b, c of all triangles.
 layout(binding = VESTIGE_TEXTURE_CORNERS) uniform samplerBuffer corners;
+#if !ONLY_CULLS
 // For each slot and lane: bits 4 i + j for segment i and triangle 4 lane + j, and, above them, 8 plus the number of
 // segments that were tested. A word that does not say so was not completed.
 layout(std430, binding = VESTIGE_BINDING_CAPTURED) writeonly buffer Words {
   uint words[];
 };
 layout(location = VESTIGE_UNIFORM_FIRST_SLOT) uniform uint first_slot;  // of this block, among the words
+#endif
 
 const float kLargest = 67108864.0;                          // 2^26
 const float kLeast = 1.0 / 1237940039285380274899124224.0;  // 2^-90
@@ -351,6 +353,7 @@ uvec4 may_meet(Bounds bounds, GpuSegment segment) {
   return uvec4(not(greaterThan(mix(vec4(-1.0), proof, bounds.computable), vec4(0.0))));
 }
 
+#if !ONLY_CULLS
 // The index in `segments` of a slot's segment.
 uint segment_index(uint slot, uint i) {
 #if CULLED_ON_GPU
@@ -371,3 +374,4 @@ void test_triangles(uint number, uint lane) {
   words[LANES * (first_slot + number) + lane] =
       bits.x | (bits.y << 1) | (bits.z << 2) | (bits.w << 3) | ((8u + i) << (4u * SLOT_SEGMENTS));
 }
+#endif

@@ -3,9 +3,10 @@
 //
 // The meshlet's box is computed as detector/broad/meshlet_bounds.cpp does, from the same rest boxes. That derivation
 // holds for any order of the sums, with fma or without. `box_margin` covers it, and flushed denormals
-// (detector/detectors/gpu_culler.cpp).
+// (detector/proofs/gpu_culler.cpp).
 //
-// Each thread counts what it tested and skinned. A driver that ends a loop early is noticed by the sums.
+// Each thread counts the segments that it tested and the corners that it skinned, so that a driver that ends these loops
+// early is noticed by the sums. The other loops are short: over the boxes of a meshlet and the influences of a vertex.
 
 layout(local_size_x = GROUP_THREADS) in;
 

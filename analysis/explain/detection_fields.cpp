@@ -119,7 +119,7 @@ constexpr Field kReplay[] = {
     {"texture_hash", "",
      "SHA-256 of all contacts' triangle, t and actuator; equal: equal to the bit; of several people SHA-256 of theirs"},
     {"pairs_tested", "", "pairs of segment and triangle that were tested"},
-    {"pairs_captured", "", "of them, pairs that the geometry shader could not reject"},
+    {"pairs_captured", "", "of them, pairs that shaders could not reject"},
     {"pairs_meeting", "", "of them, pairs that meet"},
     {"origin_changes", "", "how often the origin of computing followed the body, which had gone more than 2 m"},
     {"non_finite_frames", "",

@@ -16,7 +16,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/measure/sweep_choice.hpp"
 #include "cli/verbs.hpp"
-#include "detector/detectors/in_flight.hpp"
+#include "detector/proofs/in_flight.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/mcap/compression.hpp"
 

@@ -1,5 +1,6 @@
 #include "detector/detectors/gpu_compute_detector.hpp"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -10,10 +11,10 @@
 
 #include "detector/broad/meshlet_skin.hpp"
 #include "detector/broad/meshlets.hpp"
-#include "detector/coherence/coherent_search.hpp"
 #include "detector/detectors/contact_finder.hpp"
-#include "detector/detectors/gpu_culler.hpp"
 #include "detector/detectors/make_detectors.hpp"
+#include "detector/proofs/gpu_culler.hpp"
+#include "detector/proofs/in_flight.hpp"
 #include "detector/skinning.hpp"
 #include "traces/base/error.hpp"
 
@@ -33,7 +34,8 @@ class GpuComputeDetector final : public Detector {
         skin_(avatar, meshlets_),
         cpu_(make_cpu_detector(avatar, map, options)) {
     context_->make_current();
-    culler_.emplace(*context_, avatar, meshlets_, method_);
+    if (GpuCuller::can_hold(context_->gl(), avatar, meshlets_, method_))
+      culler_.emplace(*context_, avatar, meshlets_, method_);
   }
 
   ~GpuComputeDetector() override {
@@ -57,8 +59,24 @@ class GpuComputeDetector final : public Detector {
   }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    if (frame.segments.empty() || !submit(frame)) return cpu_->detect(frame, row);
-    return collect(frame, row);
+    DetectorWork work;
+    detect_all({&frame, 1}, {&row, 1}, {&work, 1});
+    return work;
+  }
+
+  void detect_all(std::span<const DetectorFrame> frames, std::span<ContactRow> rows,
+                  std::span<DetectorWork> work) override try {
+    keep_in_flight(
+        frames.size(),
+        [&](std::size_t i, std::size_t place) {
+          flights_[place] = {
+              .frame = &frames[i], .row = &rows[i], .work = &work[i], .on_gpu = submit(frames[i], place)};
+          return true;
+        },
+        [&](std::size_t place) { finish(place); });
+  } catch (...) {
+    abandon();
+    throw;
   }
 
   /// Returns the vertices that the detector decides on, which the CPU skins.
@@ -67,23 +85,57 @@ class GpuComputeDetector final : public Detector {
   }
 
  private:
-  bool submit(const DetectorFrame& frame) {
+  /// A frame, and where its results go.
+  struct Flight {
+    const DetectorFrame* frame = nullptr;
+    ContactRow* row = nullptr;
+    DetectorWork* work = nullptr;
+    bool on_gpu = false;
+  };
+
+  std::uint64_t run_of(const DetectorFrame& frame) const { return frame.index / run_length(); }
+
+  bool submit(const DetectorFrame& frame, std::size_t place) {
+    if (!culler_ || run_of(frame) == crowded_run_) return false;
     context_->make_current();
-    return culler_->submit(frame, stage_clock());
+    return culler_->submit(place, frame, stage_clock());
   }
 
-  /// Completes the frame that was submitted.
-  DetectorWork collect(const DetectorFrame& frame, ContactRow& row) {
-    context_->make_current();
-    const std::optional<std::span<const CulledPair>> pairs = culler_->collect(stage_clock());
-    if (!pairs) return cpu_->detect(frame, row);
+  /// All frames of the CPU come here, too, so that they are in order.
+  void finish(std::size_t place) {
+    const Flight& flight = flights_[place];
+    const DetectorFrame& frame = *flight.frame;
+    if (flight.on_gpu) {
+      context_->make_current();
+      const std::optional<std::span<const CulledPair>> pairs = culler_->collect(place, stage_clock());
+      if (!pairs) crowded_run_ = run_of(frame);
+      if (pairs && run_of(frame) != crowded_run_) {
+        *flight.work = decide(frame, *pairs, *flight.row);
+        return;
+      }
+    }
+    *flight.work = cpu_->detect(frame, *flight.row);
+    flight.work->pairs_captured = flight.work->pairs_meeting;
+  }
+
+  void abandon() {
+    if (!culler_) return;
+    try {
+      context_->make_current();
+    } catch (const Error&) {
+      return;  // the context is lost, together with everything in it
+    }
+    culler_->abandon();
+  }
+
+  DetectorWork decide(const DetectorFrame& frame, std::span<const CulledPair> pairs, ContactRow& row) {
     row.clear(frame.columns);
-    if (pairs->empty()) return {.frames_skipped = 1};
+    if (pairs.empty()) return {.frames_skipped = 1};
     DetectorWork work;
-    for (std::span<const CulledPair> left = *pairs; !left.empty();) {
+    for (std::span<const CulledPair> left = pairs; !left.empty();) {
       std::size_t count = 1;
       while (count < left.size() && left[count].meshlet == left[0].meshlet) ++count;
-      decide(frame, left.first(count), row, work);
+      decide_meshlet(frame, left.first(count), row, work);
       left = left.subspan(count);
     }
     enter(Stage::kDecision);
@@ -92,7 +144,8 @@ class GpuComputeDetector final : public Detector {
   }
 
   /// Decides the pairs of one meshlet that were not proven to miss.
-  void decide(const DetectorFrame& frame, std::span<const CulledPair> pairs, ContactRow& row, DetectorWork& work) {
+  void decide_meshlet(const DetectorFrame& frame, std::span<const CulledPair> pairs, ContactRow& row,
+                      DetectorWork& work) {
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(pairs[0].meshlet);
     ++work.meshlets_skinned;
     work.triangles_tested += triangles.size();
@@ -123,7 +176,10 @@ class GpuComputeDetector final : public Detector {
   MeshletCorners now_;
   MeshletCorners before_;
   std::unique_ptr<Detector> cpu_;    ///< for frames that the culler does not take
-  std::optional<GpuCuller> culler_;  ///< made when the context is current
+  std::optional<GpuCuller> culler_;  ///< made when the context is current, if it can hold the avatar
+  std::array<Flight, kMostInFlight> flights_;
+  /// A run of which a frame had more pairs than there is room for: the CPU takes the rest of it.
+  std::optional<std::uint64_t> crowded_run_;
 };
 
 }  // namespace

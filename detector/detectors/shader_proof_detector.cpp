@@ -14,8 +14,8 @@
 #include "detector/coherence/found_patches.hpp"
 #include "detector/detectors/contact_finder.hpp"
 #include "detector/detectors/gpu_compute_detector.hpp"
-#include "detector/detectors/in_flight.hpp"
 #include "detector/detectors/make_detectors.hpp"
+#include "detector/proofs/in_flight.hpp"
 #include "detector/skinning.hpp"
 #include "traces/base/error.hpp"
 
@@ -81,7 +81,7 @@ class ShaderProofDetector final : public Detector {
         },
         [&](std::size_t place) { finish(place); });
   } catch (...) {
-    prover_->abandon();
+    abandon();
     throw;
   }
 
@@ -130,6 +130,15 @@ class ShaderProofDetector final : public Detector {
     for (std::size_t i = 0; i < candidates_.touched().size(); ++i)
       prover_->add(candidates_.now(i), candidates_.before(i), tested, candidates_.segments(candidates_.touched()[i]));
     prover_->start();
+  }
+
+  void abandon() {
+    try {
+      context_->make_current();
+    } catch (const Error&) {
+      return;  // the context is lost, together with everything in it
+    }
+    prover_->abandon();
   }
 
   void finish(std::size_t place) {

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "detector/detector.hpp"
-#include "detector/detectors/candidate_prover.hpp"
 #include "detector/gl/gl_context.hpp"
+#include "detector/proofs/candidate_prover.hpp"
 
 namespace vestige {
 

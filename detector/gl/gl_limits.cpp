@@ -20,7 +20,7 @@ constexpr std::array<Row, 11> kRows = {{
     {GL_MAX_GEOMETRY_TOTAL_OUTPUT_COMPONENTS, {"geometry_output_components", "components in all points", 0, 16}},
     {GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, {"vertex_storage_blocks", "storage blocks, vertex shader", 0, 1}},
     {GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, {"geometry_storage_blocks", "storage blocks, geometry shader", 0, 1}},
-    {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, {"storage_bindings", "storage buffer bindings", 0, 2}},
+    {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, {"storage_bindings", "storage buffer bindings", 0, 8}},
     {GL_MAX_SHADER_STORAGE_BLOCK_SIZE, {"storage_block_bytes", "bytes of a storage block", 0, 0}},
     {GL_MAX_TEXTURE_SIZE, {"texture_side", "texels along a texture", 0, 0}},
     {GL_MAX_VIEWPORT_DIMS, {"viewport_width", "pixels along a viewport", 0, 0}},

@@ -56,9 +56,11 @@ constexpr Prover kProvers[] = {{"geometry", make_geometry_detector},
                                {"geometry_osmesa", make_geometry_detector, "osmesa"},
                                {"compute", make_compute_detector},
                                {"compute_osmesa", make_compute_detector, "osmesa"},
-                               {"compute_as_on_gpu", make_compute_detector, "gl", true},
-                               {"compute_culling", make_compute_detector, "gl", true, Culling::kGpu},
+                               {"compute_as_on_gpu", make_compute_detector, "gl", true}};
+/// These have shaders that skip, too.
+constexpr Prover kCullers[] = {{"compute_culling", make_compute_detector, "gl", true, Culling::kGpu},
                                {"compute_culling_osmesa", make_compute_detector, "osmesa", true, Culling::kGpu}};
+constexpr Method kMethods[] = {Method::kStatic, Method::kCarried, Method::kCcd};
 
 class ProvingDetector : public ::testing::TestWithParam<std::tuple<Prover, Method, Skip>> {
  protected:
@@ -74,14 +76,19 @@ class ProvingDetector : public ::testing::TestWithParam<std::tuple<Prover, Metho
   Culling culling() const { return std::get<0>(GetParam()).culling; }
 };
 
+std::string name_of_prover(const ::testing::TestParamInfo<std::tuple<Prover, Method, Skip>>& test) {
+  const auto& [prover, method, skip] = test.param;
+  return std::string(prover.name) + "_" + name_of(method) + (skip == Skip::kOn ? "_skipping" : "");
+}
+
 INSTANTIATE_TEST_SUITE_P(Each, ProvingDetector,
-                         ::testing::Combine(::testing::ValuesIn(kProvers),
-                                            ::testing::Values(Method::kStatic, Method::kCarried, Method::kCcd),
+                         ::testing::Combine(::testing::ValuesIn(kProvers), ::testing::ValuesIn(kMethods),
                                             ::testing::Values(Skip::kOff, Skip::kOn)),
-                         [](const auto& test) {
-                           return std::string(std::get<0>(test.param).name) + "_" + name_of(std::get<1>(test.param)) +
-                                  (std::get<2>(test.param) == Skip::kOn ? "_skipping" : "");
-                         });
+                         name_of_prover);
+INSTANTIATE_TEST_SUITE_P(Culling, ProvingDetector,
+                         ::testing::Combine(::testing::ValuesIn(kCullers), ::testing::ValuesIn(kMethods),
+                                            ::testing::Values(Skip::kOn)),
+                         name_of_prover);
 
 /// That shaders that prove what the CPU found did the same work as `cpu`, apart from the proofs.
 void expect_same_work(const DetectorWork& work, const DetectorWork& expected) {

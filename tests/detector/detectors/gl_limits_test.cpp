@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -23,6 +24,7 @@ using ::testing::HasSubstr;
 
 constexpr GLint kHeadBytes = 8;
 constexpr GLint kPairBytes = 8;
+const DetectorOptions kCulledByShaders = {.method = Method::kStatic, .skip = Skip::kOn, .culling = Culling::kGpu};
 
 TEST(SmallStorageBlocks, LoseNoPairAndAreNeverExceeded) {
   constexpr GLint kLimit = kHeadBytes + kPairBytes * 12288;
@@ -48,7 +50,7 @@ TEST(SmallTextureBuffers, HoldAFewMeshletsAtATimeAndLoseNoPair) {
   const DetectorFrame frame = test::frame_through(pile, 100);
   for (const auto make : {make_geometry_detector, make_compute_detector}) {
     const auto detector = make(LimitedContext::make({{GL_MAX_TEXTURE_BUFFER_SIZE, 3 * 72}}), pile, map,
-                               {Surface::kAll, PlaneSet(), Method::kStatic, Skip::kOn});
+                               {.method = Method::kStatic, .skip = Skip::kOn, .culling = Culling::kCpu});
     ContactRow row;
     const DetectorWork work = detector->detect(frame, row);
     EXPECT_EQ(work.pairs_captured, 300U * 100U);
@@ -56,18 +58,19 @@ TEST(SmallTextureBuffers, HoldAFewMeshletsAtATimeAndLoseNoPair) {
   }
 }
 
-/// Room for three meshlets, where shaders touch ten.
-TEST(SmallTextureBuffers, LeaveAFrameThatDoesNotFitToTheCpu) {
+/// Room for the corners of three meshlets, where shaders touch ten; storage blocks that hold no more than two.
+TEST(SmallBuffers, LeaveWhatDoesNotFitToTheCpu) {
   const Avatar pile = test::pile_of(300);
   const ActuatorMap map;
-  const auto compute = make_compute_detector(LimitedContext::make({{GL_MAX_TEXTURE_BUFFER_SIZE, 3 * 72}}), pile, map,
-                                             {.method = Method::kStatic, .skip = Skip::kOn, .culling = Culling::kGpu});
-  ContactRow row;
-  for (const std::uint32_t colliders : {100U, 3U}) {
-    const DetectorWork work = compute->detect(test::frame_through(pile, colliders), row);
-    EXPECT_EQ(work.pairs_captured, 0U);
-    EXPECT_EQ(work.pairs_meeting, 300U * colliders);
-    for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 299U);
+  for (const test::Limits& limits :
+       {test::Limits{{GL_MAX_TEXTURE_BUFFER_SIZE, 3 * 72}}, test::Limits{{GL_MAX_SHADER_STORAGE_BLOCK_SIZE, 3000}}}) {
+    const auto compute = make_compute_detector(LimitedContext::make(limits), pile, map, kCulledByShaders);
+    ContactRow row;
+    for (const std::uint32_t colliders : {100U, 3U}) {
+      const DetectorWork work = compute->detect(test::frame_through(pile, colliders), row);
+      EXPECT_EQ(work.pairs_meeting, 300U * colliders);
+      for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 299U);
+    }
   }
 }
 

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <ostream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "detector/detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
@@ -27,6 +30,13 @@ std::unique_ptr<Detector> make_compute_that_culls(std::shared_ptr<GlContext> con
   DetectorOptions culling = options;
   culling.culling = Culling::kGpu;
   return make_compute_detector(std::move(context), avatar, map, culling);
+}
+
+/// The detectors with shaders. That which culls differs from `compute` only if it skips.
+std::vector<decltype(&make_compute_detector)> makers_with_shaders(Skip skip) {
+  std::vector<decltype(&make_compute_detector)> makers = {make_geometry_detector, make_compute_detector};
+  if (skip == Skip::kOn) makers.push_back(make_compute_that_culls);
+  return makers;
 }
 
 class SameBits : public ::testing::TestWithParam<Question> {};
@@ -59,7 +69,7 @@ TEST_P(SameBits, ComeFromShadersInEveryContextSkippingOrNot) {
   for (const auto make_context : {test::make_context, make_osmesa_context}) {
     for (const Skip skip : {Skip::kOff, Skip::kOn}) {
       options.skip = skip;
-      for (const auto make : {make_geometry_detector, make_compute_detector, make_compute_that_culls}) {
+      for (const auto make : makers_with_shaders(skip)) {
         const auto detector = make(make_context(), builtin_avatar(), builtin_map(), options);
         EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), colliders, *detector)), expected)
             << detector->name() << ", " << detector->gl_info().context << (skip == Skip::kOn ? ", skipping" : "");
@@ -84,7 +94,7 @@ TEST(MappedSurface, GivesTheSameBitsFromTheCpuAndFromTheSlowTruth) {
   EXPECT_GT(truth.contacts(), 10U);
   EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *cpu)), hash_of(truth));
   for (const Skip skip : {Skip::kOff, Skip::kOn}) {
-    for (const auto make : {make_geometry_detector, make_compute_detector, make_compute_that_culls}) {
+    for (const auto make : makers_with_shaders(skip)) {
       const auto detector = make(test::make_context(), builtin_avatar(), builtin_map(),
                                  {Surface::kMapped, kHashedPlanes, Method::kCcd, skip});
       EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *detector)), hash_of(truth)) << detector->name();

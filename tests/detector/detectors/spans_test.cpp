@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "detector/detector.hpp"
-#include "detector/detectors/in_flight.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/gl_context.hpp"
+#include "detector/proofs/in_flight.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
 #include "tests/support/gl/gl_context.hpp"
@@ -90,6 +90,27 @@ void expect_equal(const SpanResults& expected, const SpanResults& found) {
     EXPECT_EQ(numbers(expected.work[i]), numbers(found.work[i])) << "frame " << i;
 }
 
+/// A detector with shaders, and what they do.
+struct Proving {
+  DetectorOptions with(DetectorOptions options) const {
+    options.as_on_gpu = as_on_gpu;
+    options.culling = culling;
+    return options;
+  }
+
+  MakeProver make;
+  bool as_on_gpu = false;
+  Culling culling = Culling::kCpu;
+};
+
+std::vector<Proving> ways_of_proving(Skip skip) {
+  std::vector<Proving> all;
+  for (const MakeProver make : {make_geometry_detector, make_compute_detector})
+    for (const bool as_on_gpu : {false, true}) all.push_back({make, as_on_gpu});
+  if (skip == Skip::kOn) all.push_back({make_compute_detector, true, Culling::kGpu});
+  return all;
+}
+
 using SpanQuestion = std::tuple<std::string_view, Method, float, Skip>;
 
 class Spans : public ::testing::TestWithParam<SpanQuestion> {};
@@ -98,20 +119,18 @@ TEST_P(Spans, HaveTheBitsAndTheWorkOfSingleFramesWhateverTheirLength) {
   const auto [scenario, method, radius_m, skip] = GetParam();
   const std::vector<DetectorFrame> frames = frames_of(scenario, method, skip, radius_m);
   const std::shared_ptr<GlContext> context = test::make_context();
-  DetectorOptions options = {Surface::kAll, kHashedPlanes, method, skip};
+  const DetectorOptions options = {Surface::kAll, kHashedPlanes, method, skip};
   const SpanResults on_cpu = one_by_one(*make_cpu_detector(builtin_avatar(), builtin_map(), options), frames);
-  for (const MakeProver make : {make_geometry_detector, make_compute_detector}) {
-    for (const bool as_on_gpu : {false, true}) {
-      options.as_on_gpu = as_on_gpu;
-      const auto single = make(context, builtin_avatar(), builtin_map(), options);
-      const SpanResults expected = one_by_one(*single, frames);
-      EXPECT_EQ(hash_of(expected.rows), hash_of(on_cpu.rows));
-      EXPECT_TRUE(std::ranges::any_of(expected.rows, [](const ContactRow& row) { return row.hits() > 0; }));
-      for (const std::size_t length : {std::size_t{2}, kMostInFlight, frames.size()}) {
-        SCOPED_TRACE(testing::Message() << single->name() << " in spans of " << length
-                                        << ", as on a GPU: " << as_on_gpu);
-        expect_equal(expected, in_spans(*make(context, builtin_avatar(), builtin_map(), options), frames, length));
-      }
+  for (const Proving& proving : ways_of_proving(skip)) {
+    const auto make = [&] { return proving.make(context, builtin_avatar(), builtin_map(), proving.with(options)); };
+    const auto single = make();
+    const SpanResults expected = one_by_one(*single, frames);
+    EXPECT_EQ(hash_of(expected.rows), hash_of(on_cpu.rows));
+    EXPECT_TRUE(std::ranges::any_of(expected.rows, [](const ContactRow& row) { return row.hits() > 0; }));
+    for (const std::size_t length : {std::size_t{2}, kMostInFlight, frames.size()}) {
+      SCOPED_TRACE(testing::Message() << single->name() << " in spans of " << length
+                                      << ", as on a GPU: " << proving.as_on_gpu);
+      expect_equal(expected, in_spans(*make(), frames, length));
     }
   }
 }
@@ -149,10 +168,11 @@ TEST(SpansOfSeveralDetectors, MayTakeTurnsInOneContext) {
 TEST(SpanWithAFrameThatTheDriverLoses, IsRefusedAndLeavesTheDetectorUsable) {
   const std::vector<DetectorFrame> frames = frames_of("swarm", Method::kStatic, Skip::kOn, 0);
   const DetectorOptions options = {Surface::kAll, kHashedPlanes, Method::kStatic, Skip::kOn};
-  for (const MakeProver make : {make_geometry_detector, make_compute_detector}) {
-    const auto detector = make(test::LimitedContext::make({}), builtin_avatar(), builtin_map(), options);
+  for (const Proving& proving : ways_of_proving(Skip::kOn)) {
+    const auto detector =
+        proving.make(test::LimitedContext::make({}), builtin_avatar(), builtin_map(), proving.with(options));
     const SpanResults expected = one_by_one(*detector, frames);
-    for (const int lost : {0, 3, 11}) {
+    for (const int lost : {0, 1, 3, 12}) {
       test::LimitedContext::lose_work_after(lost);
       EXPECT_THAT(test::message_of([&] { in_spans(*detector, frames, frames.size()); }),
                   HasSubstr("ended a shader before its work was done"));

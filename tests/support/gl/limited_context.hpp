@@ -32,6 +32,13 @@ class LimitedContext final : public GlContext {
   /// Lets the driver of the latest of these contexts lose a dispatch or a draw: that after `others` more.
   static void lose_work_after(int others) { before_lost_ = others; }
 
+  /// Lets the driver of the latest of these contexts compile `to` wherever it is given `from`, and count how often.
+  static void misread_shaders(std::string from, std::string to) {
+    misread_ = std::move(from);
+    misread_as_ = std::move(to);
+  }
+  static int times_misread() { return times_misread_; }
+
   /// The largest buffer that was ever made in the latest of these contexts.
   static GLsizeiptr largest_buffer_bytes() { return largest_buffer_bytes_; }
 
@@ -41,6 +48,8 @@ class LimitedContext final : public GlContext {
     real_functions_ = &real_->gl();
     largest_buffer_bytes_ = 0;
     before_lost_ = -1;
+    misread_.clear();
+    times_misread_ = 0;
   }
 
   void bind() override { real_->make_current(); }
@@ -52,6 +61,7 @@ class LimitedContext final : public GlContext {
     if (name == "glViewport") return reinterpret_cast<void*>(viewport);
     if (name == "glNamedBufferData") return reinterpret_cast<void*>(named_buffer_data);
     if (name == "glDispatchCompute") return reinterpret_cast<void*>(dispatch_compute);
+    if (name == "glDispatchComputeIndirect") return reinterpret_cast<void*>(dispatch_compute_indirect);
     if (name == "glDrawArrays") return reinterpret_cast<void*>(draw_arrays);
     if (name == "glShaderSource") return reinterpret_cast<void*>(shader_source);
     if (name == "glGetProgramiv") return reinterpret_cast<void*>(get_program);
@@ -91,6 +101,9 @@ class LimitedContext final : public GlContext {
   static void APIENTRY dispatch_compute(GLuint x, GLuint y, GLuint z) {
     if (!loses_work()) real_functions_->DispatchCompute(x, y, z);
   }
+  static void APIENTRY dispatch_compute_indirect(GLintptr offset) {
+    if (!loses_work()) real_functions_->DispatchComputeIndirect(offset);
+  }
   static void APIENTRY draw_arrays(GLenum mode, GLint first, GLsizei count) {
     if (!loses_work()) real_functions_->DrawArrays(mode, first, count);
   }
@@ -101,7 +114,16 @@ class LimitedContext final : public GlContext {
     const std::size_t place = head.find(kDefine);
     latest_is_probe_ = head.find("#define QUESTIONS ") != std::string::npos;
     latest_share_ = place == std::string::npos ? 0 : std::stoi(head.substr(place + kDefine.size()));
-    real_functions_->ShaderSource(shader, count, texts, lengths);
+    std::string all;
+    for (GLsizei i = 0; i < count; ++i) all.append(texts[i], static_cast<std::size_t>(lengths[i]));
+    for (std::size_t at = 0; !misread_.empty() && (at = all.find(misread_, at)) != std::string::npos;
+         at += misread_as_.size()) {
+      all.replace(at, misread_.size(), misread_as_);
+      ++times_misread_;
+    }
+    const GLchar* const text = all.c_str();
+    const auto length = static_cast<GLint>(all.size());
+    real_functions_->ShaderSource(shader, 1, &text, &length);
   }
   static bool is_refused() {
     return latest_share_ > largest_share_ || (latest_is_probe_ && probe_ == Probe::kRefused);
@@ -128,6 +150,9 @@ class LimitedContext final : public GlContext {
   static inline const GlFunctions* real_functions_ = nullptr;
   static inline GLsizeiptr largest_buffer_bytes_ = 0;
   static inline int before_lost_ = -1;  // dispatches and draws; negative: none is lost
+  static inline std::string misread_;
+  static inline std::string misread_as_;
+  static inline int times_misread_ = 0;
   static inline int largest_share_ = 0;
   static inline int latest_share_ = 0;
   static inline Probe probe_ = Probe::kAccepted;

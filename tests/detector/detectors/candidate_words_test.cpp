@@ -1,5 +1,5 @@
 // What the shaders of the candidates say, and how a driver that leaves their work undone is noticed.
-#include "detector/detectors/candidate_prover.hpp"
+#include "detector/proofs/candidate_words.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

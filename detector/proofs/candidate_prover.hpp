@@ -9,15 +9,14 @@
 #include <vector>
 
 #include "detector/broad/meshlet_skin.hpp"
-#include "detector/detectors/in_flight.hpp"
 #include "detector/frame.hpp"
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/draw_timer.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
 #include "detector/method.hpp"
+#include "detector/proofs/in_flight.hpp"
 #include "detector/stages.hpp"
-#include "traces/base/error.hpp"
 
 namespace vestige {
 
@@ -31,18 +30,6 @@ struct ProverOptions {
   /// costs time.
   bool as_on_gpu = false;
 };
-
-/// The part of a slot's words (shaders/candidates.glsl) that belongs to one of eight lanes, four triangles each.
-inline constexpr std::size_t kSlotLanes = kMeshletTriangles / 4;
-inline constexpr std::size_t kSlotSegments = 7;
-
-/// Returns what to throw if shaders did not do all of their work.
-Error unfinished_shader();
-
-/// Writes, for each of `segments` segments of a slot, the bits of the triangles that it may meet to `out`. Throws
-/// `Error` if a word does not say that its lane tested all of them: llvmpipe, for one, ends loops of more than 65 535
-/// rounds without a word.
-void unpack_words(std::span<const std::uint32_t, kSlotLanes> words, std::size_t segments, std::uint32_t* out);
 
 /// Proves by shaders which segments miss which triangles of meshlets. Reads and writes memory that the driver shares,
 /// so no call copies. Belongs to a context, which must be current at every call. Several frames may be in flight, each

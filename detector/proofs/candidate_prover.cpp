@@ -1,4 +1,4 @@
-#include "detector/detectors/candidate_prover.hpp"
+#include "detector/proofs/candidate_prover.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "detector/proofs/candidate_words.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
 #include "traces/base/error.hpp"
@@ -23,13 +24,6 @@ constexpr std::size_t kBlockSegments = 384;
 constexpr std::size_t kMostBlocks = 64;
 constexpr std::size_t kMostMeshlets = 1024;
 
-/// Texels of a meshlet's corners.
-constexpr std::size_t kCornerTexels = sizeof(MeshletCorners) / sizeof(glm::vec4);
-static_assert(kCornerTexels == 72 && kSlotLanes == 8);  // as candidates.glsl has them
-
-/// Threads of a group on a GPU: whole warps or waves.
-constexpr std::size_t kGpuGroupThreads = 64;
-
 /// std140 layout of the shader's Candidates.
 struct Slot {
   std::uint32_t first = 0;
@@ -41,16 +35,6 @@ struct GpuSegment {
   glm::vec4 start;  ///< w: bounding_radius_m
   glm::vec4 end;
 };
-
-/// The sets of corners of a meshlet: now, and before if the method uses it.
-std::size_t sets_of(Method method) {
-  return method == Method::kStatic ? 1 : 2;
-}
-
-std::size_t most_meshlets(const GlFunctions& gl, Method method) {
-  const auto texels = static_cast<std::size_t>(gl_limit(gl, GL_MAX_TEXTURE_BUFFER_SIZE));
-  return std::min(kMostMeshlets, texels / (kCornerTexels * sets_of(method)));
-}
 
 }  // namespace
 
@@ -101,32 +85,11 @@ struct CandidateProver::Place {
   std::vector<std::uint32_t> bits;  ///< what `finish` returns
 };
 
-Error unfinished_shader() {
-  return {"OpenGL", "the driver ended a shader before its work was done",
-          "use --detector cpu, which finds the same contacts, or another --context or --device"};
-}
-
-void unpack_words(std::span<const std::uint32_t, kSlotLanes> words, std::size_t segments, std::uint32_t* out) {
-  std::uint32_t any = 0;
-  std::uint32_t all = 0xFFFFFFFF;
-  for (const std::uint32_t word : words) {
-    any |= word;
-    all &= word;
-  }
-  constexpr std::size_t kTestedShift = 4 * kSlotSegments;
-  const std::uint32_t tested = static_cast<std::uint32_t>(8 + segments);
-  if (any >> kTestedShift != tested || all >> kTestedShift != tested) throw unfinished_shader();
-  std::fill_n(out, segments, 0);
-  if ((any & ((1U << kTestedShift) - 1)) == 0) return;
-  for (std::size_t i = 0; i < segments; ++i)
-    for (std::size_t lane = 0; lane < kSlotLanes; ++lane) out[i] |= (words[lane] >> (4 * i) & 15U) << (4 * lane);
-}
-
 CandidateProver::CandidateProver(const GlContext& context, const ProverOptions& options)
     : gl_(context.gl()),
       options_(options),
       wait_(context.info().software ? FenceWait::kAsleep : FenceWait::kActive),
-      most_meshlets_(most_meshlets(gl_, options.method)),
+      most_meshlets_(std::min(kMostMeshlets, most_meshlets_in_texture(gl_, options.method))),
       nowhere_(gl_, PlaneSet()),
       timer_(gl_) {
   static_assert(sizeof(Block) == 16384);  // the size that every driver allows for a uniform block
@@ -145,7 +108,8 @@ const GlProgram& CandidateProver::program(bool has_spheres) {
   if (program) return *program;
   const std::string head = fmt::format(
       "#version 450 core\n{}#define METHOD {}\n#define SPHERES {}\n#define BLOCK_SLOTS {}\n#define BLOCK_SEGMENTS {}\n"
-      "#define CULLED_ON_GPU 0\n#define LANES {}u\n#define SLOT_SEGMENTS {}u\n#define GROUP_THREADS {}u\n",
+      "#define CULLED_ON_GPU 0\n#define ONLY_CULLS 0\n#define LANES {}u\n#define SLOT_SEGMENTS {}u\n#define "
+      "GROUP_THREADS {}u\n",
       shaders::kConstantsH, static_cast<int>(options_.method), has_spheres ? 1 : 0, kBlockSlots, kBlockSegments,
       kSlotLanes, kSlotSegments, options_.as_on_gpu ? kGpuGroupThreads : kSlotLanes);
   const std::string proofs(shaders::kCandidatesGlsl);

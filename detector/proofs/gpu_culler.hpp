@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,7 @@
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
 #include "detector/method.hpp"
+#include "detector/proofs/in_flight.hpp"
 #include "detector/stages.hpp"
 #include "traces/scene/avatar.hpp"
 
@@ -31,39 +33,50 @@ struct CulledPair {
 
 /// Finds which segments may meet which meshlets, skins those, and proves misses: all by compute shaders
 /// (shaders/cull.comp, then candidates.comp), and the CPU waits for nothing in between. Belongs to a context, which
-/// must be current at every call.
+/// must be current at every call. Several frames may be in flight, each in a place of its own, below kMostInFlight.
 class GpuCuller {
  public:
-  /// Keeps references to `avatar` and `meshlets`.
+  /// Whether an avatar is not too large for the shaders and for the buffers of the driver.
+  static bool can_hold(const GlFunctions& gl, const Avatar& avatar, const Meshlets& meshlets, Method method);
+
+  /// Keeps references to `avatar` and `meshlets`. Precondition: it can hold them.
   GpuCuller(const GlContext& context, const Avatar& avatar, const Meshlets& meshlets, Method method);
   ~GpuCuller();
   GpuCuller(const GpuCuller&) = delete;
   GpuCuller& operator=(const GpuCuller&) = delete;
 
-  /// Starts a frame with segments, and returns at once. `clock` may be null. Returns false, and starts nothing, if the
-  /// frame is not for shaders: too many segments or meshlets, ways that are worth to be cut, or numbers too large for
-  /// their bounds.
-  bool submit(const DetectorFrame& frame, StageClock* clock);
+  /// Starts a frame in a place that no other frame is in, and returns at once. `clock` may be null. Returns false, and
+  /// starts nothing, if the frame is not for shaders: no segments or too many, ways that are worth to be cut, or
+  /// numbers too large for their bounds.
+  bool submit(std::size_t place, const DetectorFrame& frame, StageClock* clock);
 
-  /// Waits for the frame that was submitted. Returns its pairs by ascending meshlets, then segments, valid until the
-  /// next call. Returns nothing if they are more than there is room for. Throws `Error` after an OpenGL error, and if
-  /// the shaders did not do all of their work.
-  std::optional<std::span<const CulledPair>> collect(StageClock* clock);
+  /// Waits for the frame that was submitted in this place. Returns its pairs by ascending meshlets, then segments,
+  /// valid until the next call. Returns nothing if they are more than there is room for. Throws `Error` after an OpenGL
+  /// error, and if the shaders did not do all of their work; then all frames must be abandoned.
+  std::optional<std::span<const CulledPair>> collect(std::size_t place, StageClock* clock);
+
+  /// Forgets all frames that were submitted.
+  void abandon();
 
  private:
+  struct Place;
   struct Counts;
   struct Slot;
+  struct Margins {
+    float box_m = 0;
+    float corner_m = 0;
+  };
   struct Programs {
     Programs(const GlFunctions& gl, const std::string& head);
     GlProgram cull;
     GlProgram prove;
   };
 
-  void upload_frame(const DetectorFrame& frame);
-  bool set_margins(const DetectorFrame& frame);
-  void start(const Programs& programs);
-  void read_pairs(const Counts& counts);
-  void clear_words(std::size_t slots);
+  Place& place_at(std::size_t number);
+  std::optional<Margins> margins_of(const DetectorFrame& frame);
+  void upload_frame(const DetectorFrame& frame, Place& place);
+  void start(const Place& place, const Margins& margins, const Programs& programs);
+  void read_pairs(const Place& place, const Counts& counts);
   const Programs& programs(bool has_spheres);
 
   const GlFunctions& gl_;
@@ -77,22 +90,9 @@ class GpuCuller {
   GlBuffer meshlet_buffer_;
   GlBuffer rest_boxes_;
   GlBuffer vertices_;
-  GlBuffer palette_;
-  GlBuffer segments_;
-  GlBuffer slots_;
-  GlBuffer corners_;
-  GlBuffer counts_;
-  GlMappedBuffer counted_;  ///< a copy of `counts_`, after the frame
-  GlMappedBuffer found_;    ///< a copy of `slots_`, likewise
-  GlMappedBuffer words_;    ///< shaders/candidates.glsl
   DrawTimer timer_;
-  std::array<std::optional<Programs>, 2> programs_;  ///< for points alone, and for spheres, too
-  GLuint corner_texture_ = 0;
-
-  GLsync fence_ = nullptr;  ///< of the frame that was submitted
-  std::size_t segment_count_ = 0;
-  float box_margin_m_ = 0;
-  float corner_error_m_ = 0;
+  std::array<std::optional<Programs>, 2> programs_;           ///< for points alone, and for spheres, too
+  std::array<std::unique_ptr<Place>, kMostInFlight> places_;  ///< made when a frame first needs them
   std::vector<SkinMatrix> gpu_palette_;
   std::vector<glm::vec4> gpu_segments_;  ///< two each
   std::vector<CulledPair> pairs_;
