@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <utility>
 
 #include "cli/choices/person_value.hpp"
@@ -52,8 +53,6 @@ void check_sink_flags(const CLI::App& verb, const std::vector<SinkChoice>& sinks
     throw UsageError("--ttl", fmt::format("a vest frame cannot hold {} ms", first.ttl_ms), "choose a multiple of 10");
   if (std::ranges::find(sinks, SinkChoice::kFilePrefix, &SinkChoice::port) != sinks.end())
     throw UsageError("--port", "names no file", "write file:OUT");
-  if (std::ranges::all_of(sinks, &SinkChoice::is_osc) && verb.count("--ttl") != 0)
-    throw UsageError("--ttl", "OSC has no time to live", "leave it out");
   for (const char* flag : {"--baud", "--xbee-api"})
     if (std::ranges::none_of(sinks, &SinkChoice::is_serial) && verb.count(flag) != 0)
       throw UsageError(flag, fmt::format("does not apply to '{}', which is not a serial port", first.port),
@@ -90,7 +89,8 @@ void add_sink_settings(CLI::App& verb, SinkChoice& choice, const std::string& le
       ->check(help::whole_number(1, 4'000'000))
       ->type_name("N");
   add("--ttl", choice.ttl_ms,
-      "The board switches all actuators off if it receives no newer frame for this time, in ms, in steps of 10")
+      "If no newer frame comes for this time, in ms, the board switches all actuators off; over OSC, a process beside "
+      "this one does. In steps of 10")
       ->capture_default_str()
       // A state that stays is sent again in time only where it lives so long (`ttl_units` takes less).
       ->check(help::whole_number(50, 2550))
@@ -181,6 +181,7 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
   if (choice.is_osc()) {
     OscOptions osc = parse_osc_url(choice.port);
     if (!choice.osc_address.empty()) osc.address_template = choice.osc_address;
+    osc.ttl = std::chrono::milliseconds(choice.ttl_ms);
     if (choice.osc_value == "integer") osc.value = OscValue::kInteger;
     if (choice.osc_value == "boolean") osc.value = OscValue::kBoolean;
     auto sink = std::make_unique<OscSink>(osc, actuator_names);
@@ -258,6 +259,7 @@ nlohmann::ordered_json OpenSink::link_json() const {
   nlohmann::ordered_json json = {{"port", choice_.port}};
   if (osc_ != nullptr) {
     json["datagrams"] = osc_->datagrams_sent();
+    json["ttl_ms"] = choice_.ttl_ms;
     return json;
   }
   json["frame_bytes"] = frame_bytes_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -19,6 +20,8 @@ struct OscOptions {
   std::uint16_t port = 0;
   std::string address_template{kOscAddressTemplate};  ///< as for `osc_addresses`
   OscValue value = OscValue::kFloat;
+  /// If nothing was sent for this time, a child process switches everything off.
+  std::chrono::milliseconds ttl{200};
 };
 
 /// Reads `osc://HOST:PORT`, with or without a slash at the end; an IPv6 address stands in brackets. The other options

@@ -70,20 +70,22 @@ OscSink::OscSink(OscOptions options, const std::vector<std::string>& actuator_na
   const addrinfo* chosen = found;
   while (chosen != nullptr && chosen->ai_family != AF_INET) chosen = chosen->ai_next;
   if (chosen == nullptr) chosen = found;
-  std::memcpy(&host_, chosen->ai_addr, chosen->ai_addrlen);
-  host_bytes_ = chosen->ai_addrlen;
+  std::memcpy(&route_.host, chosen->ai_addr, chosen->ai_addrlen);
+  route_.host_bytes = chosen->ai_addrlen;
   // Never connected, so a missing receiver does not cause an error in the next frame.
-  socket_ = ::socket(chosen->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (socket_ < 0) throw Error(name(), fmt::format("could not open a socket: {}", std::strerror(errno)), "");
+  route_.socket = ::socket(chosen->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (route_.socket < 0) throw Error(name(), fmt::format("could not open a socket: {}", std::strerror(errno)), "");
   const int allowed = 1;
-  ::setsockopt(socket_, SOL_SOCKET, SO_BROADCAST, &allowed, sizeof(allowed));
+  ::setsockopt(route_.socket, SOL_SOCKET, SO_BROADCAST, &allowed, sizeof(allowed));
+  watchdog_.emplace(route_, datagrams_of({}), options_.ttl);
 }
 
 OscSink::~OscSink() {
-  if (socket_ >= 0) ::close(socket_);
+  if (route_.socket >= 0) ::close(route_.socket);
 }
 
 void OscSink::send(const ActuatorFrame& frame, std::uint8_t) {
+  watchdog_->note_on();
   send_levels(frame.duty);
 }
 
@@ -92,6 +94,7 @@ void OscSink::send_off(std::uint8_t) {
     if (i != 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     send_levels({});
   }
+  watchdog_->note_off();
 }
 
 void OscSink::send_levels(std::span<const std::uint8_t> level) {
@@ -121,8 +124,8 @@ std::vector<std::vector<std::byte>> OscSink::datagrams_of(std::span<const std::u
 
 void OscSink::send_datagram(std::span<const std::byte> bytes) {
   // liblo only encodes. Its own sending does not support IPv6, and uses the first address of a name.
-  const auto* const host = reinterpret_cast<const sockaddr*>(&host_);
-  while (::sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, host, host_bytes_) < 0) {
+  const auto* const host = reinterpret_cast<const sockaddr*>(&route_.host);
+  while (::sendto(route_.socket, bytes.data(), bytes.size(), MSG_NOSIGNAL, host, route_.host_bytes) < 0) {
     const int error = errno;
     if (error == EINTR) continue;
     const std::string cause = fmt::format("could not send: {}", std::strerror(error));
@@ -157,8 +160,9 @@ bool OscSink::is_refused() {
 
 int OscSink::connected_socket() const {
   // Connecting a datagram socket sends nothing: it only looks up a route to the host.
-  Descriptor made(::socket(host_.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  if (made.value() < 0 || ::connect(made.value(), reinterpret_cast<const sockaddr*>(&host_), host_bytes_) != 0)
+  Descriptor made(::socket(route_.host.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (made.value() < 0 ||
+      ::connect(made.value(), reinterpret_cast<const sockaddr*>(&route_.host), route_.host_bytes) != 0)
     return -1;
   return made.release();
 }

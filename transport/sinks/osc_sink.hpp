@@ -1,13 +1,13 @@
 #pragma once
 
-#include <sys/socket.h>
-
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "transport/actuator_sink.hpp"
+#include "transport/sinks/off_watchdog.hpp"
 #include "transport/sinks/osc_address.hpp"
 
 namespace vestige {
@@ -16,8 +16,8 @@ namespace vestige {
 ///
 /// Every frame is one bundle (more if it does not fit into a network packet) with all values, including unchanged ones.
 /// A datagram may be lost, and a receiver may start late. So each frame is complete, and the next one corrects the loss
-/// of one before. A missing receiver is not an error: see `is_refused`. OSC has no time to live, so the receiver
-/// decides what to do when frames cease.
+/// of one before. A missing receiver is not an error: see `is_refused`. OSC has no time to live, so a receiver keeps
+/// what it heard last: a child process switches everything off where this program cannot (`OffWatchdog`).
 class OscSink final : public ActuatorSink {
  public:
   /// Resolves a host name. IPv4 is preferred, because OSC programs listen there. Throws `UsageError` as `osc_addresses`
@@ -49,9 +49,8 @@ class OscSink final : public ActuatorSink {
 
   OscOptions options_;
   std::vector<std::string> addresses_;  // addresses of the actuators
-  sockaddr_storage host_ = {};
-  socklen_t host_bytes_ = 0;
-  int socket_ = -1;
+  DatagramRoute route_;
+  std::optional<OffWatchdog> watchdog_;
   std::uint64_t bytes_sent_ = 0;
   std::uint64_t datagrams_sent_ = 0;
 };

@@ -140,6 +140,23 @@ TEST_F(StreamToOtherSinks, ParametersGoByOscToWhoeverListens) {
   EXPECT_THAT(alone.standard_error, HasSubstr("no program listens there now"));
 }
 
+TEST_F(StreamToOtherSinks, AKilledStreamLeavesNothingOnOverOsc) {
+  record("--colliders hug --rate 100 --duration 1");
+  run("python3 -c \"import socket\ns=socket.socket(socket.AF_INET,socket.SOCK_DGRAM)\ns.bind(('127.0.0.1',0))\n"
+      "open('port.new','w').write(str(s.getsockname()[1]))\nimport os\nos.rename('port.new','port')\n"
+      "s.settimeout(60)\non=b',f\\0\\0\\x3f\\x80\\0\\0'\nlast=b''\n"
+      "while on not in last: last=s.recv(65536)\n"
+      "open('on','w').close()\n"
+      "try:\n  while True: last=s.recv(65536); s.settimeout(2)\nexcept TimeoutError: open('last','wb').write(last)\" & "
+      "listener=$!\nfor i in $(seq 100); do [ -e port ] && break; sleep 0.05; done\n"
+      "vestige stream -q trace.mcap --port osc://127.0.0.1:$(cat port) --osc-address '/vest/{n}' --loop --hold 1e6 & "
+      "stream=$!\nfor i in $(seq 1000); do [ -e on ] && break; sleep 0.05; done\n"
+      "kill -KILL $stream; wait $listener");
+  const std::string last = read_text_file(folder_ / "last");
+  EXPECT_THAT(last, HasSubstr("/vest/6"));
+  EXPECT_THAT(last, Not(HasSubstr(std::string("\x3f\x80\0\0", 4)))) << "an actuator is still on";
+}
+
 TEST_F(StreamToOtherSinks, AnXbeeInApiModeGetsItsFrames) {
   record("--colliders hug --rate 100 --duration 0.5");
   // A radio that nobody answers through: what it is told is kept.

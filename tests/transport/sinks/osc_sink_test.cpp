@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstring>
 #include <map>
 
@@ -56,6 +57,12 @@ class Listener {
     const ssize_t size = ::recv(socket_, datagram.data(), datagram.size(), 0);
     datagram.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
     return datagram;
+  }
+
+  /// How many bytes wait to be received.
+  std::size_t waiting() const {
+    int bytes = 0;
+    return ::ioctl(socket_, FIONREAD, &bytes) == 0 ? static_cast<std::size_t>(bytes) : 0;
   }
 
  private:
@@ -273,6 +280,50 @@ TEST(OscSink, SaysThatTheLinkIsLostWithoutANetworkAndFindsItAgain) {
   ASSERT_TRUE(WIFEXITED(status));
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "no network may be made here; nothing was tested";
   EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+/// A process that leaves an actuator on, and then does `end` to itself.
+template <typename End>
+pid_t leave_on(std::uint16_t port, End end) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  {
+    OscOptions options = local(port);
+    options.ttl = std::chrono::milliseconds(50);
+    OscSink sink(options, {"a"});
+    sink.send({0, {255}}, 0);
+    end();
+    sink.send({0, {51}}, 1);
+    sink.send_off(2);
+  }
+  ::_exit(0);
+}
+
+const Parameters kOff = {{"/a/1", "f 0.000000"}};
+const Parameters kFull = {{"/a/1", "f 1.000000"}};
+
+TEST(OscSink, EvenAProgramThatIsKilledLeavesNothingOn) {
+  const Listener listener;
+  const pid_t child = leave_on(listener.port(), [] { ::raise(SIGKILL); });
+  EXPECT_EQ(decode(listener.receive()), kFull);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(decode(listener.receive()), kOff);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+}
+
+TEST(OscSink, AProgramThatIsHeldUpLeavesNothingOnMeanwhile) {
+  const Listener listener;
+  const pid_t child = leave_on(listener.port(), [] { ::raise(SIGSTOP); });
+  EXPECT_EQ(decode(listener.receive()), kFull);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(decode(listener.receive()), kOff);
+  ::kill(child, SIGCONT);
+  EXPECT_THAT(decode(listener.receive()), ElementsAre(Pair("/a/1", "f 0.200000")));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(decode(listener.receive()), kOff);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(listener.waiting(), 0U) << "a program that ended well needs nobody to switch off for it";
 }
 
 TEST(OscSink, IsUnderstoodByOscdump) {
