@@ -42,7 +42,7 @@ struct DetectorWork {
   std::uint64_t pairs_tested = 0;      ///< (segment, triangle) pairs
   std::uint64_t triangles_tested = 0;  ///< triangles that were tested at least once
   std::uint64_t pairs_captured = 0;    ///< pairs that the shaders could not reject
-  std::uint64_t pairs_meeting = 0;     ///< pairs that really meet (counted by `geometry` and `cpu`)
+  std::uint64_t pairs_meeting = 0;     ///< pairs that really meet (counted by `geometry`, `compute` and `cpu`)
   std::uint64_t meshlets_skinned = 0;  ///< by CPU or GPU: 0 if the detector skinned the whole mesh
   std::uint64_t frames_skipped = 0;    ///< 1 if the bounds alone proved that nothing can meet
   std::uint64_t part_pairs = 0;        ///< pairs of a collider in reach and a part of the skin (with skipping)
@@ -78,8 +78,9 @@ struct GlInfo {
 
 /// Finds, for every collider, where its segment first meets the avatar's skin.
 ///
-/// `paper` reproduces HAVE 2010. `geometry`, `cpu` and `exact` keep detector/CONTRACT.md to the last bit. A detector
-/// holds references to the avatar and the map that it was made with. Only the thread that made the detector may use it.
+/// `paper` reproduces HAVE 2010. `geometry`, `compute`, `cpu` and `exact` keep detector/CONTRACT.md to the last bit. A
+/// detector holds references to the avatar and the map that it was made with. Only the thread that made the detector
+/// may use it.
 class Detector {
  public:
   Detector() = default;

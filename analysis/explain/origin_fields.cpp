@@ -23,7 +23,7 @@ constexpr Field kGl[] = {
     {"context", "", "how the context was made: egl-device-N, egl-surfaceless, osmesa"},
     {"vendor", "", "who made the driver"},
     {"software", "", "true: the renderer runs on the CPU"},
-    {"arithmetic/stage", "", "shader stage that was measured: vertex, geometry"},
+    {"arithmetic/stage", "", "shader stage that was measured: vertex, geometry, compute"},
     {"arithmetic/rounding", "", "how sums and products are rounded: nearest even, toward zero, up, down, other"},
     {"arithmetic/keeps_denormal_operands", "", "false: an operand below 2^-126 counts as 0"},
     {"arithmetic/keeps_denormal_results", "", "false: a result below 2^-126 becomes 0"},

@@ -82,9 +82,14 @@ std::string text_of(const CostTable& table) {
     const double us = table.lines[line].us[size];
     return std::isnan(us) ? "-" : fmt::format("{:.{}f} us", us, us < 1000 ? 1 : 0);
   });
-  for (const LeftOut& one : table.left_out())
-    fmt::format_to(std::back_inserter(text), "  '{}' is not measured above {:.0f} {}: a frame took {:.2g} s there\n",
+  const std::vector<LeftOut> left_out = table.left_out();
+  if (!left_out.empty())
+    fmt::format_to(std::back_inserter(text),
+                   "  left out beyond a frame of {:g} s (--frame-limit):", table.frame_limit_s);
+  for (const LeftOut& one : left_out)
+    fmt::format_to(std::back_inserter(text), "{} '{}' above {:.0f} {} ({:.2g} s)", &one == left_out.data() ? "" : ",",
                    one.name, one.size, table.along, one.frame_s);
+  if (!left_out.empty()) text += "\n";
   for (const Crossover& crossover : crossovers(table.sizes, table.lines))
     fmt::format_to(std::back_inserter(text), "  at {:.3g} {}: below, '{}' is faster; above, '{}'\n", crossover.at,
                    table.along, crossover.cheaper_below, crossover.cheaper_above);

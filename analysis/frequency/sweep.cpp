@@ -292,7 +292,17 @@ class RunningSweep {
       const Place& place = racer.scene->places[number];
       DetectionRun detection(racer.people, racer.scene->drawn[entry.point][number]);
       for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i) detection.step(place[i]);
+      if (settings_.in_flight != 0) warm_up_spans(entry, number);
     }
+  }
+
+  /// A detector that keeps frames in flight makes buffers for each of them.
+  void warm_up_spans(const Entry& entry, std::size_t number) {
+    const Racer& racer = racers_[entry.series];
+    const std::span<const TraceFrame> place = racer.scene->places[number];
+    SpanRun detection(racer.people, racer.scene->drawn[entry.point][number]);
+    detection.begin(place.front());
+    detection.step(place.subspan(1, std::min<std::size_t>(settings_.in_flight, place.size() - 1)));
   }
 
   void measure_cold(const Entry& entry) {

@@ -22,7 +22,7 @@ inline constexpr const char* kMethodHelp =
     "meet counts";
 
 /// The help of --context, for a verb that runs in one context.
-inline constexpr const char* kContextHelp = "OpenGL context that paper and geometry run in";
+inline constexpr const char* kContextHelp = "OpenGL context that paper, geometry and compute run in";
 
 /// Returns the method of this name; it must be one of `kMethodNames`.
 Method method_named(const std::string& name);

@@ -44,7 +44,8 @@ void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
-  verb.add_option("--context", choice.contexts, "OpenGL contexts to measure paper and geometry in: egl, osmesa, auto")
+  verb.add_option("--context", choice.contexts,
+                  "OpenGL contexts to measure paper, geometry and compute in: egl, osmesa, auto")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");

@@ -1,6 +1,9 @@
 #include "cli/measure/sweep_choice.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
 
 #include "cli/choices/default_trace.hpp"
 #include "cli/help/validators.hpp"
@@ -8,6 +11,12 @@
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {
+
+namespace {
+
+constexpr std::uint32_t kMostColliders = 1'000'000;  // as many as --count takes
+
+}  // namespace
 
 void add_swept_options(CLI::App& verb, SweepChoice& choice) {
   verb.add_option("TRACE", choice.trace, "The trace to measure on [default: the built-in avatar in a swarm]");
@@ -38,6 +47,9 @@ void add_measuring_options(CLI::App& verb, SweepChoice& choice, SweepSettings& s
 
 void check_sweep_choice(const SweepChoice& choice, SweepSettings& settings) {
   settings.counts = parse_counts(choice.counts, "--counts");
+  if (settings.counts.back() > kMostColliders)
+    throw UsageError("--counts", fmt::format("{} colliders are too many", settings.counts.back()),
+                     fmt::format("choose at most {}", kMostColliders));
   settings.seed = choice.common.seed;
   check_contestant_choice(choice.contestants);
 }

@@ -69,8 +69,9 @@ class GpuComputeDetector final : public Detector {
     keep_in_flight(
         frames.size(),
         [&](std::size_t i, std::size_t place) {
-          flights_[place] = {
-              .frame = &frames[i], .row = &rows[i], .work = &work[i], .on_gpu = submit(frames[i], place)};
+          const Run run = run_of(frames[i]);
+          const bool on_gpu = submit(frames[i], run, place);
+          flights_[place] = {.frame = &frames[i], .row = &rows[i], .work = &work[i], .run = run, .on_gpu = on_gpu};
           return true;
         },
         [&](std::size_t place) { finish(place); });
@@ -85,18 +86,30 @@ class GpuComputeDetector final : public Detector {
   }
 
  private:
+  /// Frames one after another, up to the next multiple of `run_length()`.
+  struct Run {
+    std::uint64_t sequence = 0;  ///< of frames without a gap, in the order in which they were given
+    std::uint64_t number = 0;    ///< in the trace
+    bool operator==(const Run&) const = default;
+  };
   /// A frame, and where its results go.
   struct Flight {
     const DetectorFrame* frame = nullptr;
     ContactRow* row = nullptr;
     DetectorWork* work = nullptr;
+    Run run;
     bool on_gpu = false;
   };
 
-  std::uint64_t run_of(const DetectorFrame& frame) const { return frame.index / run_length(); }
+  /// Returns the run that the frame belongs to: the one before goes on only where the frame follows.
+  Run run_of(const DetectorFrame& frame) {
+    if (frame.index != next_index_) ++sequences_;
+    next_index_ = frame.index + 1;
+    return {sequences_, frame.index / run_length()};
+  }
 
-  bool submit(const DetectorFrame& frame, std::size_t place) {
-    if (!culler_ || run_of(frame) == crowded_run_) return false;
+  bool submit(const DetectorFrame& frame, const Run& run, std::size_t place) {
+    if (!culler_ || run == crowded_run_) return false;
     context_->make_current();
     return culler_->submit(place, frame, stage_clock());
   }
@@ -108,8 +121,8 @@ class GpuComputeDetector final : public Detector {
     if (flight.on_gpu) {
       context_->make_current();
       const std::optional<std::span<const CulledPair>> pairs = culler_->collect(place, stage_clock());
-      if (!pairs) crowded_run_ = run_of(frame);
-      if (pairs && run_of(frame) != crowded_run_) {
+      if (!pairs) crowded_run_ = flight.run;
+      if (pairs && flight.run != crowded_run_) {
         *flight.work = decide(frame, *pairs, *flight.row);
         return;
       }
@@ -178,8 +191,10 @@ class GpuComputeDetector final : public Detector {
   std::unique_ptr<Detector> cpu_;    ///< for frames that the culler does not take
   std::optional<GpuCuller> culler_;  ///< made when the context is current, if it can hold the avatar
   std::array<Flight, kMostInFlight> flights_;
+  std::uint64_t sequences_ = 0;
+  std::uint64_t next_index_ = 0;
   /// A run of which a frame had more pairs than there is room for: the CPU takes the rest of it.
-  std::optional<std::uint64_t> crowded_run_;
+  std::optional<Run> crowded_run_;
 };
 
 }  // namespace

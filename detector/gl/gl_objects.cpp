@@ -53,7 +53,7 @@ GlMappedBuffer::GlMappedBuffer(const GlFunctions& gl, std::size_t bytes) : gl_(g
   data_ = static_cast<std::byte*>(gl_.MapNamedBufferRange(name_, 0, size, kShared));
   if (data_ != nullptr) return;
   gl_.DeleteBuffers(1, &name_);
-  for (int i = 0; i < 2; ++i) gl_.GetError();  // of both calls: they are said here
+  for (int i = 0; i < 2; ++i) gl_.GetError();  // of the two calls: whoever checks later must not report them again
   throw Error("OpenGL", fmt::format("the driver does not share {} bytes with shaders", bytes), kFaultRemedy);
 }
 

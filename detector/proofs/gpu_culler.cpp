@@ -341,12 +341,10 @@ std::optional<std::span<const CulledPair>> GpuCuller::collect(std::size_t place,
 }
 
 void GpuCuller::abandon() {
+  gl_.Finish();
   for (const std::unique_ptr<Place>& place : places_) {
     if (place == nullptr) continue;
-    if (place->fence != nullptr) {
-      gl_.Finish();
-      gl_.DeleteSync(std::exchange(place->fence, nullptr));
-    }
+    gl_.DeleteSync(std::exchange(place->fence, nullptr));
     place->clear_words(kMostSlots);
   }
 }

@@ -39,15 +39,16 @@ void add(GrowthPanel& panel, std::size_t index, const JsonField& series, const G
   line.points.push_back(point);
 }
 
-/// Adds a sentence for each series that was not measured at the largest sizes. Older files have no such list.
+/// Adds a sentence about the series that were not measured at the largest sizes. Older files have no such list.
 void add_left_out(const JsonField& document, const char* along, std::string& legend) {
   if (!document.has("left_out")) return;
   const JsonField all = document.at("left_out").at(along);
   if (all.value().empty()) return;
+  legend += fmt::format(" Too slow for more {}:", along);
   for (std::size_t i = 0; i < all.count(); ++i)
-    legend += fmt::format(" '{}' is not measured above {:.0f} {}: a frame took {:.2g} s there.",
-                          all.at(i).at("series").text(), all.at(i).at("above").within(1, kMostSize), along,
-                          all.at(i).at("frame_s").within(0, kMostFrame_s));
+    legend += fmt::format("{} '{}' above {:.0f} ({:.2g} s a frame)", i == 0 ? "" : ",", all.at(i).at("series").text(),
+                          all.at(i).at("above").within(1, kMostSize), all.at(i).at("frame_s").within(0, kMostFrame_s));
+  legend += ".";
 }
 
 void finish(GrowthPanel& panel) {

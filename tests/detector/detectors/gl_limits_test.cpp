@@ -58,19 +58,27 @@ TEST(SmallTextureBuffers, HoldAFewMeshletsAtATimeAndLoseNoPair) {
   }
 }
 
-/// Room for the corners of three meshlets, where shaders touch ten; storage blocks that hold no more than two.
-TEST(SmallBuffers, LeaveWhatDoesNotFitToTheCpu) {
+/// Room for the corners of three meshlets, where shaders touch ten: they find that out.
+TEST(SmallTextureBuffers, LeaveFramesThatTouchTooManyMeshletsToTheCpu) {
   const Avatar pile = test::pile_of(300);
   const ActuatorMap map;
-  for (const test::Limits& limits :
-       {test::Limits{{GL_MAX_TEXTURE_BUFFER_SIZE, 3 * 72}}, test::Limits{{GL_MAX_SHADER_STORAGE_BLOCK_SIZE, 3000}}}) {
-    const auto compute = make_compute_detector(LimitedContext::make(limits), pile, map, kCulledByShaders);
+  const auto compute =
+      make_compute_detector(LimitedContext::make({{GL_MAX_TEXTURE_BUFFER_SIZE, 3 * 72}}), pile, map, kCulledByShaders);
+  ContactRow row;
+  EXPECT_EQ(compute->detect(test::frame_through(pile, 100), row).pairs_meeting, 300U * 100U);
+  for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 299U);
+  EXPECT_EQ(LimitedContext::dispatches(), 2);
+}
+
+TEST(SmallStorageBlocks, LeaveAnAvatarThatTheyDoNotHoldToTheCpu) {
+  const Avatar pile = test::pile_of(300);
+  const ActuatorMap map;
+  for (const GLint bytes : {3000, 1 << 20}) {
+    const auto compute = make_compute_detector(LimitedContext::make({{GL_MAX_SHADER_STORAGE_BLOCK_SIZE, bytes}}), pile,
+                                               map, kCulledByShaders);
     ContactRow row;
-    for (const std::uint32_t colliders : {100U, 3U}) {
-      const DetectorWork work = compute->detect(test::frame_through(pile, colliders), row);
-      EXPECT_EQ(work.pairs_meeting, 300U * colliders);
-      for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 299U);
-    }
+    EXPECT_EQ(compute->detect(test::frame_through(pile, 100), row).pairs_meeting, 300U * 100U);
+    EXPECT_EQ(LimitedContext::dispatches(), bytes == 3000 ? 0 : 2);
   }
 }
 

@@ -35,21 +35,30 @@ INSTANTIATE_TEST_SUITE_P(Each, CullingCompute, ::testing::Values(Method::kStatic
                          [](const auto& test) { return std::string(name_of(test.param)); });
 
 /// 1600 segments at each of 40 patches need more slots than there are; 5000 segments are more than a group tests.
-TEST_P(CullingCompute, LeavesFramesThatAreTooLargeToTheCpuAndTakesTheNextAgain) {
+TEST_P(CullingCompute, LeavesFramesThatAreTooLargeToTheCpuAndTakesTheNextRunAgain) {
   const Avatar pile = test::pile_of(1280);
   const ActuatorMap map;
-  const auto compute = make_compute_detector(test::make_context(), pile, map, culling_options(GetParam()));
+  const auto compute = make_compute_detector(test::LimitedContext::make({}), pile, map, culling_options(GetParam()));
   ContactRow row;
-  DetectorFrame frame;
-  for (const std::uint32_t colliders : {20U, 1600U, 20U, 5000U, 20U}) {
-    const std::uint64_t next_run = frame.index + compute->run_length();
-    frame = test::frame_through(pile, colliders);
-    frame.index = next_run;
+  const auto dispatches = [&](std::uint64_t index, std::uint32_t colliders) {
+    DetectorFrame frame = test::frame_through(pile, colliders);
+    frame.index = index;
+    const int before = test::LimitedContext::dispatches();
     const DetectorWork work = compute->detect(frame, row);
     EXPECT_EQ(work.pairs_meeting, 1280U * colliders);
-    ASSERT_EQ(row.size(), colliders);
-    for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 1279U);
-  }
+    EXPECT_EQ(row.size(), colliders);
+    for (const Contact& contact : row) EXPECT_EQ(contact.triangle, 1279U);
+    return test::LimitedContext::dispatches() - before;
+  };
+  const std::uint64_t run = compute->run_length();
+  EXPECT_EQ(dispatches(run - 3, 20), 2);  // one that culls and skins, and one that proves
+  EXPECT_EQ(dispatches(run - 2, 1600), 2);
+  EXPECT_EQ(dispatches(run - 1, 20), 0);  // the rest of that run
+  EXPECT_EQ(dispatches(run, 20), 2);
+  EXPECT_EQ(dispatches(run + 1, 5000), 0);  // this one alone
+  EXPECT_EQ(dispatches(run + 2, 20), 2);
+  EXPECT_EQ(dispatches(run + 3, 1600), 2);
+  EXPECT_EQ(dispatches(run + 3, 20), 2);  // another pass, through the same run
 }
 
 /// Two detectors, whose threads take turns in another order.

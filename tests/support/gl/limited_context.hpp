@@ -32,6 +32,9 @@ class LimitedContext final : public GlContext {
   /// Lets the driver of the latest of these contexts lose a dispatch or a draw: that after `others` more.
   static void lose_work_after(int others) { before_lost_ = others; }
 
+  /// How many dispatches of compute shaders the latest of these contexts was asked for.
+  static int dispatches() { return dispatches_; }
+
   /// Lets the driver of the latest of these contexts compile `to` wherever it is given `from`, and count how often.
   static void misread_shaders(std::string from, std::string to) {
     misread_ = std::move(from);
@@ -50,6 +53,7 @@ class LimitedContext final : public GlContext {
     before_lost_ = -1;
     misread_.clear();
     times_misread_ = 0;
+    dispatches_ = 0;
   }
 
   void bind() override { real_->make_current(); }
@@ -99,9 +103,11 @@ class LimitedContext final : public GlContext {
     return before_lost_ >= 0 && before_lost_-- == 0;
   }
   static void APIENTRY dispatch_compute(GLuint x, GLuint y, GLuint z) {
+    ++dispatches_;
     if (!loses_work()) real_functions_->DispatchCompute(x, y, z);
   }
   static void APIENTRY dispatch_compute_indirect(GLintptr offset) {
+    ++dispatches_;
     if (!loses_work()) real_functions_->DispatchComputeIndirect(offset);
   }
   static void APIENTRY draw_arrays(GLenum mode, GLint first, GLsizei count) {
@@ -153,6 +159,7 @@ class LimitedContext final : public GlContext {
   static inline std::string misread_;
   static inline std::string misread_as_;
   static inline int times_misread_ = 0;
+  static inline int dispatches_ = 0;
   static inline int largest_share_ = 0;
   static inline int latest_share_ = 0;
   static inline Probe probe_ = Probe::kAccepted;
