@@ -1,6 +1,5 @@
 #pragma once
 
-#include <sys/socket.h>
 #include <sys/types.h>
 
 #include <chrono>
@@ -10,15 +9,9 @@
 #include <vector>
 
 #include "traces/base/descriptor.hpp"
+#include "transport/sinks/datagram_sender.hpp"
 
 namespace vestige {
-
-/// Where datagrams go, and from which socket.
-struct DatagramRoute {
-  int socket = -1;
-  sockaddr_storage host = {};
-  socklen_t host_bytes = 0;
-};
 
 /// Switches off by datagrams what this program left on: a child process, which outlives it. The child sends the
 /// datagrams if this program ends without a word, even by SIGKILL, or shows no sign of life for the time `silence`.

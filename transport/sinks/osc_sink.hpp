@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "transport/actuator_sink.hpp"
+#include "transport/sinks/datagram_sender.hpp"
 #include "transport/sinks/off_watchdog.hpp"
 #include "transport/sinks/osc_address.hpp"
 
@@ -23,36 +23,27 @@ class OscSink final : public ActuatorSink {
   /// Resolves a host name. IPv4 is preferred, because OSC programs listen there. Throws `UsageError` as `osc_addresses`
   /// does, and `Error` if the host is unknown.
   OscSink(OscOptions options, const std::vector<std::string>& actuator_names);
-  ~OscSink() override;
 
-  std::string name() const override { return osc_url(options_); }
+  std::string name() const override { return out_.name(); }
   /// Ignores levels beyond the actuators, and switches actuators beyond the levels off. Throws `LinkLost` if there is
   /// no route to the host for now.
   void send(const ActuatorFrame& frame, std::uint8_t sequence) override;
   void send_off(std::uint8_t sequence) override;
-  bool reconnect() override;
-  /// Switches everything off, and waits 50 ms for the host's report that no program listens at this port. Most hosts
-  /// send such a report; a firewall may block it.
-  bool is_refused();
-  std::uint64_t bytes_sent() const override { return bytes_sent_; }
+  bool reconnect() override { return out_.has_route(); }
+  /// Switches everything off, and says whether the host reports that no program listens: `DatagramSender::is_refused`.
+  bool is_refused() { return out_.is_refused(datagrams_of({})); }
+  std::uint64_t bytes_sent() const override { return out_.bytes_sent(); }
   /// What a receiver gets if none is lost: states, and the datagrams that switch everything off first and last.
-  std::uint64_t datagrams_sent() const { return datagrams_sent_; }
+  std::uint64_t datagrams_sent() const { return out_.datagrams_sent(); }
 
  private:
-  /// Returns a connected socket, on which the host's errors arrive. Returns a negative number, with errno set, if there
-  /// is no route to the host.
-  int connected_socket() const;
   void send_levels(std::span<const std::uint8_t> level);
   std::vector<std::vector<std::byte>> datagrams_of(std::span<const std::uint8_t> level) const;
-  void send_datagram(std::span<const std::byte> bytes);
-  void count(std::span<const std::byte> datagram);
 
   OscOptions options_;
   std::vector<std::string> addresses_;  // addresses of the actuators
-  DatagramRoute route_;
-  std::optional<OffWatchdog> watchdog_;
-  std::uint64_t bytes_sent_ = 0;
-  std::uint64_t datagrams_sent_ = 0;
+  DatagramSender out_;
+  OffWatchdog watchdog_;
 };
 
 }  // namespace vestige
