@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -8,38 +7,26 @@
 #include <vector>
 
 #include "analysis/run/detection_run.hpp"
+#include "analysis/run/frame_pace.hpp"
 #include "detector/detector.hpp"
 #include "traces/timeline/timeline.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 
-struct PlaybackOptions {
-  double rate = 1;  ///< trace seconds per second
-  bool loop = false;
-};
-
-struct PlaybackResult {
+struct PlaybackResult : FramePace {
   /// What was found on one person.
   struct Person {
     std::uint64_t contacts = 0;
     std::uint64_t non_finite_frames = 0;  ///< counted by `FrameBuilder`
     std::uint64_t non_finite_segments = 0;
   };
-  std::uint64_t frames = 0;
-  std::vector<Person> people;          ///< in the order in which they were given
-  std::uint64_t loops = 0;             ///< complete runs through the trace
-  std::uint64_t missed_deadlines = 0;  ///< frames that were not done when the next frame was due
-  double most_late_s = 0;              ///< largest delay between a frame's due time and its start
-  double duration_s = 0;               ///< wall-clock time
-
-  /// Returns whether a frame began more than a second late: the detector is too slow, or the process was stopped.
-  bool fell_behind() const { return most_late_s > 1; }
+  std::vector<Person> people = {};  ///< in the order in which they were given
 };
 
 /// The calls that a playback makes, all in the thread that runs `play`. `person` is a place in the list of people.
 struct PlaybackCalls {
-  using Clock = std::chrono::steady_clock;
+  using Clock = FrameCalls::Clock;
 
   /// Turns the contacts of a frame into what the vest is told. `frame` is null in a gap of the trace. The reference is
   /// valid until the next call.
@@ -50,14 +37,13 @@ struct PlaybackCalls {
   /// Called before each frame, and repeatedly while the playback waits for one. Returns false to end the playback. May
   /// exchange the actuator map.
   std::function<bool(double share)> go_on;
-  /// Called once, as soon as `PlaybackResult::fell_behind` is true.
+  /// As in `FrameCalls`.
   std::function<void()> fell_behind;
   /// Called for each person after each frame, and during gaps, with what to tell the vest and when that was due.
   std::function<void(std::size_t person, const ActuatorFrame&, Clock::time_point due)> take;
 };
 
-/// Replays the people of `trace` through their detectors at the trace's own pace. The first frame is due at once.
-/// Deadlines are absolute, so a late frame does not delay the frames that follow. All frames are replayed, however
+/// Replays the people of `trace` through their detectors, as `play_frames` paces it. All frames are replayed, however
 /// late, since contacts depend on the frame before. In a gap of the trace, the law continues without contacts, so that
 /// no actuator is held on. When the playback loops, the times that are handed on continue to rise.
 PlaybackResult play(TraceReader& trace, std::span<const DetectedPerson> people, const PlaybackOptions& options,
