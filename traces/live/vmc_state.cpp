@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <utility>
 
-#include "traces/base/error.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/scene/radius.hpp"
 #include "traces/trace_file/trace_format.hpp"
@@ -64,54 +62,16 @@ const std::string& text(const OscMessage& message) {
   return *value;
 }
 
-/// Returns the rotations of all nodes in the rest pose, relative to the avatar.
-std::vector<glm::dquat> rest_rotations(const Avatar& avatar) {
-  std::vector<glm::dquat> world(avatar.nodes.size(), glm::dquat(1, 0, 0, 0));
-  for (const int index : avatar.node_order) {
-    const auto i = static_cast<std::size_t>(index);
-    const Node& node = avatar.nodes[i];
-    glm::dquat local(node.rest.rotation);
-    if (node.fixed_matrix) {
-      const glm::dmat4& matrix = *node.fixed_matrix;
-      local = glm::quat_cast(glm::dmat3(glm::normalize(glm::dvec3(matrix[0])), glm::normalize(glm::dvec3(matrix[1])),
-                                        glm::normalize(glm::dvec3(matrix[2]))));
-    }
-    const glm::dquat parent = node.parent < 0 ? glm::dquat(1, 0, 0, 0) : world[static_cast<std::size_t>(node.parent)];
-    world[i] = glm::normalize(parent * glm::normalize(local));
-  }
-  return world;
-}
-
-std::size_t outermost(const Avatar& avatar, std::size_t node) {
-  while (avatar.nodes[node].parent >= 0) node = static_cast<std::size_t>(avatar.nodes[node].parent);
-  return node;
-}
-
 }  // namespace
 
 VmcState::VmcState(const Avatar& avatar, const glm::dvec3& origin_m, const Stance& stance)
-    : avatar_(avatar), origin_m_(origin_m), stance_(stance), pose_(rest_pose(avatar)), facing_(avatar.facing.axis) {
-  if (avatar.humanoid.node_of.empty())
-    throw Error("--avatar", "no joint is recognised as a bone of a human body, so no message can move the avatar",
-                "use a VRM file, or name the joints as in Unity, Mixamo, Unreal or Blender");
-  require_standing(avatar.facing, "--avatar");
-  for (const NodeLocal& node : pose_.nodes) rest_.push_back(glm::normalize(glm::dquat(node.rotation)));
+    : avatar_(avatar),
+      origin_m_(origin_m),
+      stance_(stance),
+      skeleton_(vmc_skeleton(avatar, "--avatar")),
+      pose_(rest_pose(avatar)) {
   pose_.origin_m = origin_m;
-  std::vector<glm::dmat4> world;
-  Pose at_zero = rest_pose(avatar);
-  world_matrices(avatar, at_zero, world);
-  const std::vector<glm::dquat> rotation = rest_rotations(avatar);
-  for (const auto& [name, node] : avatar.humanoid.node_of) {
-    Bone bone{.node = node};
-    if (const int parent = avatar.nodes[node].parent; parent >= 0) {
-      bone.parent_rest = rotation[static_cast<std::size_t>(parent)];
-      bone.parent_from_avatar = glm::inverse(world[static_cast<std::size_t>(parent)]);
-    }
-    bone_of_.emplace(name, bone);
-  }
-  const auto hips = bone_of_.find("Hips");
-  top_ = outermost(avatar, hips == bone_of_.end() ? bone_of_.begin()->second.node : hips->second.node);
-  top_local_ = pose_.nodes[top_];
+  top_local_ = pose_.nodes[skeleton_.top];
 }
 
 bool VmcState::take(std::span<const std::byte> datagram) {
@@ -147,18 +107,16 @@ bool VmcState::take(std::span<const std::byte> datagram) {
   }
 }
 
-VmcState::Placement VmcState::placement_of(const OscMessage& message) const {
+VmcPlacement VmcState::placement_of(const OscMessage& message) const {
   double values[7] = {};
   for (std::size_t i = 0; i < std::size(values); ++i) values[i] = number(message, i + 1);
   const auto [x, y, z, qx, qy, qz, qw] = values;
-  // Mirrored across x, which makes the axes those of an avatar that faces +Z; then turned to where the avatar faces.
-  const glm::dvec3 axis = turned_from_front({qx, -qy, -qz}, facing_);
-  const Placement placement = {.position = turned_from_front({-x, y, z}, facing_),
-                               .rotation = glm::dquat(qw, axis.x, axis.y, axis.z)};
+  VmcPlacement placement = from_unity({.position = {x, y, z}, .rotation = {qw, qx, qy, qz}}, skeleton_.facing);
   const double length = glm::length(placement.rotation);
   if (!(length > kShortestQuaternion))
     throw Malformed(fmt::format("{}: its rotation is a quaternion without length", message.address));
-  return {.position = placement.position, .rotation = placement.rotation / length};
+  placement.rotation /= length;
+  return placement;
 }
 
 bool VmcState::apply(const OscMessage& message) {
@@ -184,24 +142,23 @@ bool VmcState::apply(const OscMessage& message) {
   return false;
 }
 
-bool VmcState::move_bone(const std::string& name, const Placement& placement) {
-  const auto found = bone_of_.find(name);
-  if (found == bone_of_.end()) {
+bool VmcState::move_bone(const std::string& name, const VmcPlacement& placement) {
+  const auto found = skeleton_.bones.find(name);
+  if (found == skeleton_.bones.end()) {
     if (unknown_bones_.size() < kMostUnknownBones) unknown_bones_.insert(name);
     return false;
   }
   bones_.insert(name);
-  const Bone& bone = found->second;
-  NodeLocal& local = bone.node == top_ ? top_local_ : pose_.nodes[bone.node];
-  local.rotation = glm::quat(
-      glm::normalize(glm::conjugate(bone.parent_rest) * placement.rotation * bone.parent_rest * rest_[bone.node]));
+  const VmcBone& bone = found->second;
+  NodeLocal& local = bone.node == skeleton_.top ? top_local_ : pose_.nodes[bone.node];
+  local.rotation = glm::quat(bone.local_rotation(placement.rotation));
   if (name == "Hips")
     local.translation = glm::vec3(glm::dvec3(bone.parent_from_avatar * glm::dvec4(placement.position, 1)));
   return true;
 }
 
 void VmcState::show(TraceFrame& frame) {
-  NodeLocal& top = pose_.nodes[top_];
+  NodeLocal& top = pose_.nodes[skeleton_.top];
   top = top_local_;
   top.translation = glm::vec3(root_.position + root_.rotation * glm::dvec3(top_local_.translation));
   top.rotation = glm::quat(glm::normalize(root_.rotation * glm::normalize(glm::dquat(top_local_.rotation))));

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 #include <map>
 #include <set>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "traces/live/osc_packet.hpp"
+#include "traces/live/vmc_skeleton.hpp"
 #include "traces/recording/frame_ring.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/stance.hpp"
@@ -61,30 +61,17 @@ class VmcState {
   const std::set<std::string>& bones() const { return bones_; }
 
  private:
-  struct Bone {
-    std::size_t node = 0;
-    glm::dquat parent_rest = glm::dquat(1, 0, 0, 0);  ///< rotation of the bone's parent in the rest pose
-    glm::dmat4 parent_from_avatar = glm::dmat4(1);    ///< converts a position from the avatar's frame to the parent's
-  };
-  struct Placement {
-    glm::dvec3 position = glm::dvec3(0);
-    glm::dquat rotation = glm::dquat(1, 0, 0, 0);
-  };
-
   bool apply(const OscMessage& message);
-  Placement placement_of(const OscMessage& message) const;
-  bool move_bone(const std::string& name, const Placement& placement);
+  VmcPlacement placement_of(const OscMessage& message) const;
+  bool move_bone(const std::string& name, const VmcPlacement& placement);
 
   const Avatar& avatar_;
   glm::dvec3 origin_m_;
   Stance stance_;
-  Pose pose_;                     ///< before the stance
-  std::vector<glm::dquat> rest_;  ///< each node's own rotation in the rest pose
-  std::map<std::string, Bone, std::less<>> bone_of_;
-  Facing facing_;
-  std::size_t top_ = 0;  ///< the outermost node above the hips, which the root moves
-  NodeLocal top_local_;  ///< transform of `top_` without the root
-  Placement root_;
+  VmcSkeleton skeleton_;
+  Pose pose_;            ///< before the stance
+  NodeLocal top_local_;  ///< transform of the skeleton's top without the root
+  VmcPlacement root_;
   std::map<std::uint32_t, ColliderSample> colliders_;
   std::vector<std::uint32_t> teleported_;
   std::vector<RecordingNote> markers_;
