@@ -179,15 +179,20 @@ constexpr Field kStream[] = {
     {"overruns", "", "answers that say that the board had lost bytes"},
     {"receive_errors", "", "damaged frames, as the board counts them"},
     {"links_lost", "", "how often the link was lost"},
+    {"unsent", "", "frames that were not sent, since there was no route to the host; only over VMC"},
+    {"poses_left_out", "", "poses that no message can say: not finite, or beyond 1e9 m; only over VMC"},
+    {"colliders_left_out", "", "colliders that no message can say in some frame; only over VMC"},
+    {"deviation_m", "m", "most that the skin as sent lies from the trace's, an upper bound; only over VMC"},
     {"maps_reloaded", "", "how often a changed map was read again"},
     {"floor_us", "us", "least time that the sender leaves between two frames"},
-    {"latency_us/written/*", "us", "from a change until its last byte was written: median, 95 %, 99 %, most"},
+    {"latency_us/written/*", "us",
+     "from a change, over VMC from a frame's due time, until its last byte was written: median, 95 %, 99 %, most"},
     {"latency_us/acknowledged/*", "us", "from a change until its answer: median, 95 %, 99 %, most; 0: no answers"},
 };
 
 constexpr Field kLink[] = {
     {"port", "", "--port, as given"},
-    {"datagrams", "", "datagrams sent; only over OSC"},
+    {"datagrams", "", "datagrams sent; only over OSC and VMC"},
     {"frame_bytes", "bytes", "length of one frame on the line"},
     {"baud", "bit/s", "speed of the line"},
     {"line_time_us", "us", "how long one frame takes on the line"},

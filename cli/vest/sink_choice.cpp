@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <set>
 #include <utility>
 
 #include "cli/choices/person_value.hpp"
@@ -25,7 +26,7 @@ constexpr const char* kVestGroup = "Vest";
 
 /// The scheme of a URL may be in capitals (RFC 3986, section 3.1).
 std::string with_small_scheme(std::string port) {
-  for (const std::string_view scheme : {SinkChoice::kOscPrefix, SinkChoice::kFilePrefix})
+  for (const std::string_view scheme : {SinkChoice::kOscPrefix, SinkChoice::kFilePrefix, SinkChoice::kVmcPrefix})
     if (::strncasecmp(port.c_str(), scheme.data(), scheme.size()) == 0) port.replace(0, scheme.size(), scheme);
   return port;
 }
@@ -46,9 +47,28 @@ std::optional<XbeeOptions> xbee_options(const SinkChoice& choice) {
                      parse_address(choice.xbee_address)};
 }
 
+/// For ports that take poses and colliders: refuses ports of vests beside them, and flags of vests.
+void check_played_flags(const CLI::App& verb, const std::vector<SinkChoice>& sinks) {
+  const auto vest = std::ranges::find_if_not(sinks, &SinkChoice::is_vmc);
+  if (vest != sinks.end())
+    throw UsageError("--port",
+                     fmt::format("'{}' drives a vest, and another port takes poses and colliders", vest->port),
+                     "run 'vestige stream' once for each kind of port");
+  const std::set<std::string> known = {"TRACE",   "--port",    "--rate",  "--loop", "--json",
+                                       "--quiet", "--verbose", "--force", "--seed"};
+  for (const CLI::Option* option : verb.get_options())
+    if (option->count() != 0 && !known.contains(option->get_name()))
+      throw UsageError(
+          option->get_name(),
+          fmt::format("does not apply to '{}', which takes poses and colliders: nothing is detected or felt here",
+                      sinks.front().port),
+          "leave it out");
+}
+
 /// Refuses flags that would say nothing, or not what they seem to.
 void check_sink_flags(const CLI::App& verb, const std::vector<SinkChoice>& sinks) {
   const SinkChoice& first = sinks.front();
+  if (std::ranges::any_of(sinks, &SinkChoice::is_vmc)) return check_played_flags(verb, sinks);
   if (first.ttl_ms % 10 != 0)
     throw UsageError("--ttl", fmt::format("a vest frame cannot hold {} ms", first.ttl_ms), "choose a multiple of 10");
   if (std::ranges::find(sinks, SinkChoice::kFilePrefix, &SinkChoice::port) != sinks.end())
@@ -123,12 +143,13 @@ void add_sink_settings(CLI::App& verb, SinkChoice& choice, const std::string& le
 }
 
 /// Adds --port, for one or for several.
-CLI::Option* add_port(CLI::App& verb, auto& value, const std::string& remark) {
+/// `others` are further kinds of ports, `remark` follows all kinds.
+CLI::Option* add_port(CLI::App& verb, auto& value, const std::string& others, const std::string& remark) {
   return verb
       .add_option("--port", value,
                   "Where frames go: a serial device (/dev/ttyUSB0: an XBee, or the board's USB); osc://HOST:PORT, "
                   "parameters over UDP; file:OUT, a file of frames as on the wire; '-', the same on standard output" +
-                      remark)
+                      others + remark)
       ->group(kVestGroup)
       ->required()
       ->transform(CLI::Validator(
@@ -143,15 +164,22 @@ CLI::Option* add_port(CLI::App& verb, auto& value, const std::string& remark) {
 }  // namespace
 
 void add_sink_options(CLI::App& verb, SinkChoice& choice) {
-  add_port(verb, choice.port, "")->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
+  add_port(verb, choice.port, "", "")->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
   add_sink_settings(verb, choice, "");
-  verb.parse_complete_callback([&verb, &choice] { check_sink_flags(verb, {choice}); });
+  verb.parse_complete_callback([&verb, &choice] {
+    if (choice.is_vmc())
+      throw UsageError("--port", fmt::format("'{}' takes poses and colliders, which is no vest", choice.port),
+                       "name the port of a vest; 'vestige stream' sends poses there");
+    check_sink_flags(verb, {choice});
+  });
 }
 
 void add_sinks_options(CLI::App& verb, SinkChoice& settings, std::vector<std::string>& ports,
                        const std::string& levels_remark) {
-  add_port(verb, ports, "; of several people, that of person K; repeat for more people")
-      ->type_name("[K=]DEVICE|osc://HOST:PORT|file:OUT|-")
+  add_port(verb, ports,
+           "; vmc://HOST:PORT: poses and colliders in the place of frames, as VR programs send them to record --live",
+           "; of several people, that of person K; repeat for more people")
+      ->type_name("[K=]DEVICE|osc://HOST:PORT|vmc://HOST:PORT|file:OUT|-")
       ->expected(1)
       ->take_all();
   add_sink_settings(verb, settings, levels_remark);

@@ -36,7 +36,9 @@ struct SinkChoice {
 
   Quantity quantity() const { return levels == "pressure" ? Quantity::kPressure : Quantity::kDuty; }
   bool is_osc() const { return port.starts_with(kOscPrefix); }
-  bool is_serial() const { return !is_osc() && !is_file(); }
+  bool is_serial() const { return !is_osc() && !is_file() && !is_vmc(); }
+  /// Whether the port takes poses and colliders, not actuator frames: only `stream` sends them.
+  bool is_vmc() const { return port.starts_with(kVmcPrefix); }
   bool is_file() const { return port == "-" || port.starts_with(kFilePrefix); }
   /// The same settings for another port.
   SinkChoice at(std::string other_port) const;
@@ -45,6 +47,8 @@ struct SinkChoice {
 
   static constexpr std::string_view kOscPrefix = "osc:";
   static constexpr std::string_view kFilePrefix = "file:";
+  static constexpr std::string_view kVmcPrefix = "vmc:";
+  static constexpr std::string_view kVmcScheme = "vmc";
 };
 
 /// Adds --port, --baud, --ttl, --levels, --xbee-api, --xbee-request, --xbee-address, --xbee-escaped, --osc-address and

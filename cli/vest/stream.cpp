@@ -18,6 +18,7 @@
 #include "cli/vest/sink_choice.hpp"
 #include "cli/vest/stream_options.hpp"
 #include "cli/vest/stream_report.hpp"
+#include "cli/vest/vmc_stream.hpp"
 #include "cli/vest/wearer.hpp"
 #include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
@@ -25,8 +26,6 @@
 namespace vestige::cli {
 
 namespace {
-
-constexpr PersonFlag kPortFlag = {"--port", "port", "/dev/ttyUSB0"};
 
 /// Returns whether a map is a file that may change during the playback.
 bool is_watched(const std::string& map) {
@@ -57,8 +56,10 @@ std::vector<PersonValue> parse_ports(const StreamOptions& options) {
   std::set<std::string> taken;
   for (const PersonValue& port : ports)
     if (!taken.insert(port.value).second)
-      throw UsageError("--port", fmt::format("'{}' would be the vest of two people", port.value),
-                       "give each person a port of their own");
+      throw UsageError(
+          "--port",
+          fmt::format("'{}' would be the {} of two people", port.value, options.plays_people() ? "port" : "vest"),
+          "give each person a port of their own");
   return ports;
 }
 
@@ -142,6 +143,7 @@ PlaybackResult play_to(const std::vector<std::unique_ptr<Wearer>>& wearers, Open
 void run_stream(const StreamOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<PersonValue> ports = parse_ports(options);
+  if (options.plays_people()) return stream_people(options, ports, invocation);
   const std::vector<PersonValue> maps = parse_maps(options.maps);
   std::vector<std::string> outputs = {options.log, options.common.json};
   for (const PersonValue& port : ports) outputs.push_back(options.sink.at(port.value).output_path());
@@ -186,9 +188,10 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
 
 void add_stream(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<StreamOptions>();
-  CLI::App* verb = add_verb(program, "stream", "Replay a trace in real time and drive a vest with it",
+  CLI::App* verb = add_verb(program, "stream",
+                            "Replay a trace in real time: drive a vest with it, or play its people to another program",
                             "  vestige stream man.mcap --port /dev/ttyUSB0\n"
-                            "  vestige stream man.mcap --port osc://127.0.0.1:9000 --rate 2\n");
+                            "  vestige stream man.mcap --port vmc://127.0.0.1:39539 --rate 2\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   add_sinks_options(*verb, options->sink, options->ports,
                     ", by the speed at which a collider pushes into the skin, as a share of 1 m/s");

@@ -10,14 +10,19 @@
 
 namespace vestige::cli {
 
-namespace {
-
 nlohmann::ordered_json to_json(const LatencyHistogram& latency) {
   return {{"p50", latency.quantile_us(0.5)},
           {"p95", latency.quantile_us(0.95)},
           {"p99", latency.quantile_us(0.99)},
           {"max", latency.max_us()}};
 }
+
+std::string describe(const LatencyHistogram& latency) {
+  return fmt::format("p50 {:.2f}, p95 {:.2f}, p99 {:.2f}, max {:.2f} ms", latency.quantile_us(0.5) / 1e3,
+                     latency.quantile_us(0.95) / 1e3, latency.quantile_us(0.99) / 1e3, latency.max_us() / 1e3);
+}
+
+namespace {
 
 /// What was sent to all vests together.
 SenderStatistics total_of(const std::vector<std::unique_ptr<Wearer>>& wearers) {
@@ -70,11 +75,6 @@ nlohmann::ordered_json avatars_of(const Streamed& streamed) {
     json["link"] = link_of(wearer);
   }
   return avatars;
-}
-
-std::string describe(const LatencyHistogram& latency) {
-  return fmt::format("p50 {:.2f}, p95 {:.2f}, p99 {:.2f}, max {:.2f} ms", latency.quantile_us(0.5) / 1e3,
-                     latency.quantile_us(0.95) / 1e3, latency.quantile_us(0.99) / 1e3, latency.max_us() / 1e3);
 }
 
 /// Returns what is known of the frames that switch everything off at the end.

@@ -10,6 +10,7 @@
 #include "cli/verbs.hpp"
 #include "cli/vest/stream_options.hpp"
 #include "cli/vest/wearer.hpp"
+#include "transport/latency_histogram.hpp"
 
 namespace vestige::cli {
 
@@ -20,6 +21,10 @@ struct Streamed {
   const std::vector<std::unique_ptr<Wearer>>& wearers;  ///< in the order of the playback's people
   PlaybackResult playback = {};
 };
+
+/// Median, 95 %, 99 % and most, in microseconds; and the same for people, in milliseconds.
+nlohmann::ordered_json to_json(const LatencyHistogram& latency);
+std::string describe(const LatencyHistogram& latency);
 
 nlohmann::ordered_json to_json(const Streamed& streamed, const Invocation& invocation);
 

@@ -71,12 +71,13 @@ TEST_F(Explain, KnowsEveryNameThatReplaysAndExportsWrite) {
       "vestige replay small.mcap --contacts c.csv --timeline c.tact --surface mapped --detector decimated -q "
       "--json c.json");
   must_run("vestige stream small.mcap --port osc://127.0.0.1:9 --rate 20 --log log.csv --json stream.json -q");
+  must_run("vestige stream small.mcap --port vmc://127.0.0.1:9 --rate 20 --json people.json -q");
   must_run("vestige stream small.mcap --port - --rate 20 --json pipe.json -q");
   must_run("vestige export small.mcap -o folder --json export.json -q");
   must_run("vestige export small.mcap -o small.h5 --contacts b.h5 -q");
   must_run("vestige export small.mcap -o small.ndjson -q");
   must_run("vestige import folder -o back.mcap --json import.json -q");
-  expect_all_explained(18);
+  expect_all_explained(19);
 }
 
 TEST_F(Explain, KnowsEveryNameThatVerbsOnTracesWrite) {
