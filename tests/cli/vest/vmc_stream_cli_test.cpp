@@ -29,7 +29,7 @@ using ::testing::Not;
 class StreamPeople : public test::CommandLineTest {
  protected:
   /// Frames that are so far apart that a busy machine records each of them.
-  static constexpr const char* kSlow = " --rate 5 --duration 1.6 ";
+  static constexpr const char* kSlow = " --rate 1.7 --duration 3 ";
 
   void record(const std::string& flags) const {
     const test::Outcome outcome = run("vestige record -q -o sent.mcap " + flags);
@@ -52,7 +52,7 @@ class StreamPeople : public test::CommandLineTest {
 
   /// Ends a recording. Returns its frames.
   std::vector<TraceFrame> heard(test::BackgroundProcess& recorder) const {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // until the recorder has taken all
     recorder.signal(SIGINT);
     recorder.wait();  // 3 if the machine was so busy that a frame was lost
     EXPECT_THAT(read_text_file(folder_ / "error"), Not(HasSubstr("several sources")));
@@ -151,7 +151,7 @@ TEST_F(StreamPeople, SeveralPeopleComeBackAsOneTraceWithEachColliderOnce) {
 }
 
 TEST_F(StreamPeople, NoWayLeadsFromTheEndToTheBeginningOfALoop) {
-  record("--animation walk --count 3" + std::string(kSlow));
+  record("--animation walk --count 3 --rate 1.7 --duration 1.8");
   const auto recorder = record_live({port_});
   const test::Outcome outcome = run("vestige stream sent.mcap --loop --json stream.json" + flag_ +
                                     "& stream=$!\nsleep 4\nkill -INT $stream; wait $stream");
