@@ -38,7 +38,9 @@ static void end_kicks(void) {}
 
 static void all_off(void) {
   left_ms = 0;
+  pwm_cut();
   for (uint8_t i = 0; i < kActuators; ++i) start_or_set(i, 0);
+  pwm_apply();
 }
 
 void actuators_start(void) {
@@ -58,11 +60,13 @@ ISR(TIMER0_COMPA_vect) {
     failed_safe = true;
   }
   end_kicks();
+  pwm_tick();
 }
 
 void actuators_set(const uint8_t* levels, uint8_t count, uint8_t ttl_10ms) {
   ATOMIC_BLOCK(ATOMIC_FORCEON) {
     for (uint8_t i = 0; i < kActuators; ++i) start_or_set(i, i < count ? levels[i] : 0);
+    pwm_apply();
     left_ms = ttl_10ms * 10 + 1;  // the millisecond that runs has begun already
   }
 }

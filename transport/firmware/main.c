@@ -1,5 +1,5 @@
-// The vest's own program, for an Arduino MEGA (ATmega1280 or ATmega2560) with six vibrators. README.md says how to wire
-// and flash it.
+// The vest's own program, for an Arduino MEGA (ATmega1280 or ATmega2560) with vibrators. README.md says how to wire and
+// flash it.
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -22,13 +22,15 @@ enum { kLevels = 'S' };
 #endif
 
 enum { kVersion = 1 };
-enum { kFlagFailedSafe = 1, kFlagOverran = 2 };
+enum { kFlagFailedSafe = 1, kFlagOverran = 2, kFlagOutputsFailed = 4 };
 
 static uint8_t receive_errors_;
 
 // Flags say what happened since the last answer; one that finds no room on the line takes nothing with it.
 static uint8_t flags(void) {
-  return (actuators_failed_safe() ? kFlagFailedSafe : 0) | (uart_overran() ? kFlagOverran : 0);
+  const bool outputs_failed = pwm_failed();  // an interrupt may change it
+  return (actuators_failed_safe() || outputs_failed ? kFlagFailedSafe : 0) | (uart_overran() ? kFlagOverran : 0) |
+         (outputs_failed ? kFlagOutputsFailed : 0);
 }
 
 static void answer(const uint8_t* bytes, uint8_t length, uint8_t reported) {
@@ -36,6 +38,7 @@ static void answer(const uint8_t* bytes, uint8_t length, uint8_t reported) {
   if (!uart_send(frame, encode(bytes, length, frame))) return;
   if (reported & kFlagFailedSafe) actuators_clear_fail_safe();
   if (reported & kFlagOverran) uart_clear_overrun();
+  if (reported & kFlagOutputsFailed) pwm_clear_failure();
 }
 
 static void acknowledge(uint8_t sequence) {
