@@ -18,7 +18,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-using Duties = std::array<std::uint8_t, SimulatedBoard::kMotors>;
+using Duties = std::array<std::uint8_t, SimulatedBoard::kPins>;
 
 std::filesystem::path firmware(const std::string& name) {
   return std::filesystem::path(VESTIGE_FIRMWARE_DIR) / (name + ".elf");
@@ -46,8 +46,8 @@ class Bench {
   }
 
   /// Clock cycles that each pin was high in the following whole periods.
-  std::array<std::uint64_t, SimulatedBoard::kMotors> high_cycles(const std::uint64_t periods) {
-    std::array<std::uint64_t, SimulatedBoard::kMotors> high{};
+  std::array<std::uint64_t, SimulatedBoard::kPins> high_cycles(const std::uint64_t periods) {
+    std::array<std::uint64_t, SimulatedBoard::kPins> high{};
     for (std::size_t i = 0; i < high.size(); ++i) high[i] = board.pin(i).high_cycles(board.cycle());
     board.run_until_cycle(board.cycle() + periods * PinDuty::kPeriod_cycles);
     for (std::size_t i = 0; i < high.size(); ++i) high[i] = board.pin(i).high_cycles(board.cycle()) - high[i];
@@ -70,7 +70,7 @@ class Bench {
     return last_s;
   }
   bool no_motor_ever_moved() {
-    for (std::size_t i = 0; i < SimulatedBoard::kMotors; ++i) {
+    for (std::size_t i = 0; i < SimulatedBoard::kPins; ++i) {
       if (board.pin(i).high_cycles(board.cycle()) != 0) return false;
     }
     return true;
@@ -141,13 +141,13 @@ TEST_P(FirmwareTest, GivesEachMotorExactlyTheShareOfTimeThatItIsTold) {
   constexpr std::uint64_t kPeriods = 3;
   for (unsigned level = 0; level < 256; ++level) {
     Bytes levels;
-    for (unsigned motor = 0; motor < SimulatedBoard::kMotors; ++motor) {
+    for (unsigned motor = 0; motor < SimulatedBoard::kPins; ++motor) {
       levels.push_back(static_cast<std::uint8_t>(level + 43 * motor));
     }
     send(levels_frame('S', static_cast<std::uint8_t>(level), 20, levels));
     high_cycles(2);
     const auto high = high_cycles(kPeriods);
-    for (std::size_t motor = 0; motor < SimulatedBoard::kMotors; ++motor) {
+    for (std::size_t motor = 0; motor < SimulatedBoard::kPins; ++motor) {
       const std::uint64_t share = levels[motor] == 255 ? 256 : levels[motor];
       // 0.01 %: a cycle or two of each period's 16384, for an interrupt that holds the timer up.
       EXPECT_NEAR(static_cast<double>(high[motor]), static_cast<double>(kPeriods * 64 * share), 1.6 * kPeriods)
@@ -216,7 +216,7 @@ TEST_P(FirmwareTest, SwitchesOffByItselfWhenTheTimeToLiveRunsOut) {
     send(levels_frame('S', 1, ttl_10ms, {255, 255, 255, 255, 255, 255}));
     const double told_s = board.time_s();
     board.run_for(ttl_10ms * 0.01 + 0.05);
-    for (std::size_t motor = 0; motor < SimulatedBoard::kMotors; ++motor) {
+    for (std::size_t motor = 0; motor < SimulatedBoard::kPins; ++motor) {
       const DutyChange last = board.pin(motor).changes().back();
       const double held_s = static_cast<double>(last.cycle) / static_cast<double>(SimulatedBoard::kClock_hz) - told_s;
       EXPECT_EQ(last.duty, 0);
@@ -235,7 +235,8 @@ TEST_P(FirmwareTest, StaysOnWhileFramesKeepComing) {
     board.run_for(0.05);
   }
   const auto rows = board.duties();
-  EXPECT_EQ(std::count_if(rows.begin(), rows.end(), [](const DutyRow& row) { return row.duty == kOff; }), 1)
+  EXPECT_EQ(
+      std::count_if(rows.begin(), rows.end(), [](const DutyRow& row) { return std::ranges::equal(row.duty, kOff); }), 1)
       << "only before the first frame";
   EXPECT_EQ(duties(), kMeasured);
 }

@@ -71,12 +71,13 @@ std::string microcontroller_of(const std::filesystem::path& firmware) {
 }  // namespace
 
 SimulatedBoard::SimulatedBoard(const std::filesystem::path& firmware, const std::string& microcontroller,
-                               const std::uint32_t baud)
+                               const std::uint32_t baud, const std::size_t chips)
     : name_(firmware.string()),
       microcontroller_(microcontroller),
       baud_(baud),
       byte_cycles_((kClock_hz * kBitsPerByte + baud / 2) / baud),
-      firmware_(std::make_unique<elf_firmware_t>()) {
+      firmware_(std::make_unique<elf_firmware_t>()),
+      chips_(chips) {
   const std::string linked_for = microcontroller_of(firmware);
   if (microcontroller_.empty()) microcontroller_ = linked_for;
   avr_global_logger_set(stay_silent);
@@ -112,6 +113,7 @@ void SimulatedBoard::power_on() {
   }
   avr_irq_register_notify(avr_io_getirq(avr_, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), byte_from_board, this);
   watch_pins();
+  chips_.connect(avr_, power_on_cycle_);
 }
 
 void SimulatedBoard::power_off() {
@@ -127,8 +129,15 @@ void SimulatedBoard::power_cycle() {
   line_in_.clear();
   compare_output_ = {};
   for (PinDuty& pin : pins_) pin.set(now, false);
+  chips_.power_cycle(now);
   power_on_cycle_ = now;
   power_on();
+}
+
+void SimulatedBoard::hold_reset(const double duration_s) {
+  avr_reset(avr_);
+  note_start_pins();
+  avr_->cycle += static_cast<std::uint64_t>(duration_s * static_cast<double>(kClock_hz));
 }
 
 void SimulatedBoard::derail() {
@@ -153,7 +162,7 @@ void SimulatedBoard::overrun(const std::span<const std::uint8_t> bytes) {
 }
 
 void SimulatedBoard::watch_pins() {
-  for (std::size_t i = 0; i < kMotors; ++i) {
+  for (std::size_t i = 0; i < kPins; ++i) {
     const Port& port = kPorts[i / kOutputs];
     watches_[i] = {this, i};
     avr_irq_register_notify(avr_io_getirq(avr_, static_cast<std::uint32_t>(AVR_IOCTL_TIMER_GETIRQ(port.timer)),
@@ -252,14 +261,19 @@ std::uint64_t SimulatedBoard::cycle() const {
   return power_on_cycle_ + avr_->cycle;
 }
 
+void SimulatedBoard::note_start_pins() {
+  compare_output_ = {};
+  for (std::size_t i = 0; i < kPorts.size(); ++i) update_pins(i);
+  chips_.update();
+}
+
 void SimulatedBoard::run_until_cycle(const std::uint64_t end) {
   // A program that sleeps would be carried past the end, to whatever wakes it.
   if (cycle() < end) avr_cycle_timer_register(avr_, end - cycle(), wake, nullptr);
   while (cycle() < end) {
     if (avr_->pc == 0) {  // the program starts: pins are inputs until it says otherwise, and simavr has lost its timers
       ++starts_;
-      compare_output_ = {};
-      for (std::size_t i = 0; i < kPorts.size(); ++i) update_pins(i);
+      note_start_pins();
       start_feeding();
     }
     const int state = avr_run(avr_);
@@ -287,11 +301,12 @@ std::vector<DutyRow> SimulatedBoard::duties() {
     std::uint8_t duty;
   };
   std::vector<Change> changes;
-  for (std::size_t motor = 0; motor < kMotors; ++motor) {
-    for (const DutyChange& change : pins_[motor].changes()) changes.push_back({change.cycle, motor, change.duty});
+  for (std::size_t motor = 0; motor < motors(); ++motor) {
+    const auto& of_motor = chips_.outputs() == 0 ? pins_[motor].changes() : chips_.changes(motor);
+    for (const DutyChange& change : of_motor) changes.push_back({change.cycle, motor, change.duty});
   }
   std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) { return a.cycle < b.cycle; });
-  std::vector<DutyRow> rows = {DutyRow{}};
+  std::vector<DutyRow> rows = {{0, std::vector<std::uint8_t>(motors())}};
   std::uint64_t row_cycle = 0;
   for (const Change& change : changes) {
     if (change.cycle != row_cycle) {
@@ -305,7 +320,7 @@ std::vector<DutyRow> SimulatedBoard::duties() {
 }
 
 void SimulatedBoard::write_duties(const std::filesystem::path& path) {
-  TimelineCsv file(path, Overwrite::kAllow, kMotors);
+  TimelineCsv file(path, Overwrite::kAllow, motors());
   for (const DutyRow& row : duties()) file.write({row.time_s, {row.duty.begin(), row.duty.end()}});
   file.commit();
 }

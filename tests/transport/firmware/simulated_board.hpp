@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/transport/firmware/pin_duty.hpp"
+#include "tests/transport/firmware/pwm_chips.hpp"
 
 struct avr_t;
 struct avr_uart_t;
@@ -22,23 +23,26 @@ namespace vestige::test {
 /// Duties of all motors from then on.
 struct DutyRow {
   double time_s = 0;
-  std::array<std::uint8_t, 6> duty{};
+  std::vector<std::uint8_t> duty;
 };
 
 /// The vest's firmware on a simulated microcontroller of 16 MHz, in virtual time: the same input, the same output.
+///
+/// Its motors hang on six pins, or on PCA9685 chips.
 ///
 /// A motor's pin follows its timer's compare output while that is connected, and its port otherwise, as the data sheet
 /// draws it; simavr's own pins fall back to the port's bit whenever the port is written.
 class SimulatedBoard {
  public:
-  static constexpr std::size_t kMotors = 6;
+  static constexpr std::size_t kPins = 6;
   static constexpr std::uint64_t kClock_hz = 16'000'000;
 
   /// `microcontroller` as simavr calls it, "atmega1280"; empty: the kind that the ELF was linked for, as far as it says
-  /// so. `baud` is the line's; the firmware must be within 4 % of it, as a real line demands. Throws `Error`: the file
-  /// cannot be read, is no AVR program, or the simulator does not know the microcontroller.
+  /// so. `baud` is the line's; the firmware must be within 4 % of it, as a real line demands. `chips` is the number of
+  /// PCA9685 that drive the motors; 0: pins do. Throws `Error`: the file cannot be read, is no AVR program, or the
+  /// simulator does not know the microcontroller.
   explicit SimulatedBoard(const std::filesystem::path& firmware, const std::string& microcontroller = "",
-                          std::uint32_t baud = 57600);
+                          std::uint32_t baud = 57600, std::size_t chips = 0);
   ~SimulatedBoard();
   SimulatedBoard(const SimulatedBoard&) = delete;
   SimulatedBoard& operator=(const SimulatedBoard&) = delete;
@@ -64,6 +68,8 @@ class SimulatedBoard {
 
   /// The supply fails, all pins go low, and it comes back at once.
   void power_cycle();
+  /// RESET is held low for that long: pins are inputs, and chips keep what they have.
+  void hold_reset(double duration_s);
   /// The program goes astray: from now on it runs in circles, with interrupts off.
   void derail();
   /// A register changes its value by itself, as in a strong disturbance. `address` as in the data sheet.
@@ -81,10 +87,12 @@ class SimulatedBoard {
   };
   const AnswerTimes& answer_times() const { return answer_times_; }
 
+  std::size_t motors() const { return chips_.outputs() == 0 ? kPins : chips_.outputs(); }
   const PinDuty& pin(std::size_t motor) const { return pins_[motor]; }
-  /// The pins' duties so far, a row at each change; the first at 0 s.
+  PwmChips& chips() { return chips_; }
+  /// The motors' duties so far, a row at each change; the first at 0 s.
   std::vector<DutyRow> duties();
-  /// The same in the form of a timeline: `time_s,actuator_1,…,actuator_6`. Overwrites. Throws `Error`.
+  /// The same in the form of a timeline: `time_s,actuator_1,…`. Overwrites. Throws `Error`.
   void write_duties(const std::filesystem::path& path);
 
  private:
@@ -100,6 +108,7 @@ class SimulatedBoard {
   void power_on();
   void power_off();
   void watch_pins();
+  void note_start_pins();
   void note_answer();
   void match_line_speed();
   void update_pins(std::size_t port);
@@ -125,9 +134,10 @@ class SimulatedBoard {
   AnswerTimes answer_times_;
   std::deque<std::uint8_t> line_in_;
   std::deque<SentByte> line_out_;
-  std::array<bool, kMotors> compare_output_{};
-  std::array<Watch, kMotors> watches_{};
-  std::array<PinDuty, kMotors> pins_;
+  std::array<bool, kPins> compare_output_{};
+  std::array<Watch, kPins> watches_{};
+  std::array<PinDuty, kPins> pins_;
+  PwmChips chips_;
 };
 
 }  // namespace vestige::test

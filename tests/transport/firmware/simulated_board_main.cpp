@@ -1,5 +1,5 @@
 // The vest's board without the board: runs the firmware in step with the clock, behind a pseudo terminal that a client
-// opens as it would /dev/ttyUSB0, and measures at the pins what the motors would get.
+// opens as it would /dev/ttyUSB0, and measures at its outputs what the motors would get.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -31,9 +31,19 @@ void catch_signals() {
 struct Options {
   std::string firmware, microcontroller, link, duties;
   std::uint32_t baud = 57600;
+  std::size_t chips = 0;
   double duration_s = 0;
   bool force = false;
 };
+
+void check_chips(vestige::test::SimulatedBoard& board, const Options& options) {
+  if (board.chips().is_used() == (options.chips > 0)) return;
+  if (options.chips == 0)
+    throw vestige::Error(options.firmware, "this firmware drives motors through PCA9685 chips, and the board has none",
+                         "say how many it has: --chips N");
+  throw vestige::Error(options.firmware, "this firmware drives motors on pins, and the board has chips",
+                       "leave --chips out, or give a firmware for chips: vest-atmega1280-16.elf");
+}
 
 void simulate(const Options& options) {
   using Clock = std::chrono::steady_clock;
@@ -45,10 +55,11 @@ void simulate(const Options& options) {
 
   if (!options.duties.empty())
     vestige::refuse_overwrite(options.duties, options.force ? vestige::Overwrite::kAllow : vestige::Overwrite::kRefuse);
-  vestige::test::SimulatedBoard board(options.firmware, options.microcontroller, options.baud);
+  vestige::test::SimulatedBoard board(options.firmware, options.microcontroller, options.baud, options.chips);
   vestige::test::BoardTerminal terminal(options.link);
   catch_signals();
-  board.run_for(0.01);  // whoever reads the name finds the board started
+  board.run_for(0.05);  // whoever reads the name finds the board started, and its chips
+  check_chips(board, options);
   fmt::print("{}\n", terminal.name());
   std::fflush(stdout);
 
@@ -97,9 +108,12 @@ int main(int argc, char** argv) {
   app.add_option("firmware", options.firmware, "The firmware: build/release/firmware/vest-atmega1280.elf")->required();
   app.add_option("--mcu", options.microcontroller, "atmega1280 or atmega2560; else what the firmware was linked for");
   app.add_option("--link", options.link, "Make a symbolic link of this name to the terminal");
-  app.add_option("--duties", options.duties, "At the end, write the duties measured at the pins to this CSV file");
+  app.add_option("--duties", options.duties, "At the end, write the duties measured at the outputs to this CSV file");
   app.add_flag("--force", options.force, "Overwrite that file");
   app.add_option("--baud", options.baud, "Speed of the line")->capture_default_str()->check(CLI::Range(300, 2'000'000));
+  app.add_option("--chips", options.chips, "Number of PCA9685 chips on the board; 0: motors on pins")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 4));
   app.add_option("--duration", options.duration_s, "Seconds until the end; else until a signal")
       ->check(CLI::NonNegativeNumber);
   try {

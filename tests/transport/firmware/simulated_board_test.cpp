@@ -93,7 +93,7 @@ class SimulatedBoardTest : public ::testing::Test {
     std::vector<DutyRow> rows;
     while (std::getline(text, line)) {
       std::istringstream fields(line);
-      DutyRow row;
+      DutyRow row{0, std::vector<std::uint8_t>(6)};
       fields >> row.time_s;
       for (std::uint8_t& duty : row.duty) {
         char comma = 0;
@@ -195,6 +195,26 @@ TEST(SimulatedBoardErrorsTest, SaysWhatItCannotRun) {
   const Outcome unknown = run("simulated_board --mcu z80 '" + firmware() + "'", folder.path());
   EXPECT_EQ(unknown.exit_code, 1);
   EXPECT_THAT(unknown.standard_error, HasSubstr("does not know the microcontroller 'z80'"));
+}
+
+TEST(SimulatedBoardErrorsTest, SaysThatTheFirmwareIsForAnotherBoard) {
+  const TemporaryFolder folder;
+  const Outcome pins = run("simulated_board --chips 1 '" + firmware() + "'", folder.path());
+  EXPECT_EQ(pins.exit_code, 1);
+  EXPECT_THAT(pins.standard_error, HasSubstr("drives motors on pins, and the board has chips"));
+  const std::string for_chips = std::filesystem::path(VESTIGE_FIRMWARE_DIR) / "vest-atmega1280-32.elf";
+  const Outcome chips = run("simulated_board '" + for_chips + "'", folder.path());
+  EXPECT_EQ(chips.exit_code, 1);
+  EXPECT_THAT(chips.standard_error, HasSubstr("say how many it has: --chips N"));
+}
+
+TEST(SimulatedBoardErrorsTest, WritesTheDutiesOfAllItsChips) {
+  const TemporaryFolder folder;
+  const std::string for_chips = std::filesystem::path(VESTIGE_FIRMWARE_DIR) / "vest-atmega1280-64.elf";
+  const Outcome outcome =
+      run("simulated_board --chips 4 --duration 0.2 --duties d.csv '" + for_chips + "'", folder.path());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(read_text_file(folder / "d.csv"), HasSubstr(",actuator_64\n0,0,0"));
 }
 
 TEST(SimulatedBoardErrorsTest, EndsAfterItsDuration) {
