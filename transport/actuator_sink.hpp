@@ -18,6 +18,7 @@ struct Acknowledgement {
   bool was_in_fail_safe = false;    ///< the board had switched itself off, since no valid frame came for too long
   bool overrun = false;             ///< the board lost bytes since its last answer
   std::uint8_t receive_errors = 0;  ///< damaged frames since the board started, modulo 256
+  bool outputs_failed = false;      ///< the chips that drive the actuators did not answer the board, so all were off
 };
 
 /// The other end is gone for now: unplugged, or hung up. `reconnect` may restore the link.

@@ -37,6 +37,7 @@ SenderStatistics& SenderStatistics::operator+=(const SenderStatistics& other) {
   superseded += other.superseded;
   acknowledged += other.acknowledged;
   fail_safes += other.fail_safes;
+  output_failures += other.output_failures;
   overruns += other.overruns;
   receive_errors += other.receive_errors;
   links_lost += other.links_lost;
@@ -264,12 +265,13 @@ void Sender::receive() {
 
 void Sender::count_faults(const Acknowledgement& answer) {
   if (answer.overrun) ++statistics_.overruns;
+  if (answer.outputs_failed) ++statistics_.output_failures;
   // The first answer of a link reports the time before the link.
   if (receive_errors_before_) {
     const bool restarted = answer.was_in_fail_safe && answer.receive_errors < *receive_errors_before_;
     const int before = restarted ? 0 : *receive_errors_before_;
     statistics_.receive_errors += static_cast<std::uint8_t>(answer.receive_errors - before);
-    if (answer.was_in_fail_safe && !deserted_) ++statistics_.fail_safes;
+    if (answer.was_in_fail_safe && !answer.outputs_failed && !deserted_) ++statistics_.fail_safes;
   }
   receive_errors_before_ = answer.receive_errors;
 }

@@ -42,11 +42,12 @@ struct SenderStatistics {
   std::uint64_t changes = 0;  ///< frames with a changed state
   std::uint64_t superseded = 0;  ///< changes that were never sent
   std::uint64_t acknowledged = 0;
-  std::uint64_t fail_safes = 0;      ///< answers saying that the board had switched itself off before
-  std::uint64_t overruns = 0;        ///< answers saying that the board had lost bytes
-  std::uint64_t receive_errors = 0;  ///< damaged frames, by the board's count
-  std::uint64_t links_lost = 0;      ///< number of times that the link was lost
-  std::uint64_t bytes = 0;           ///< passed to the system
+  std::uint64_t fail_safes = 0;       ///< answers saying that the board had switched itself off before, but for these
+  std::uint64_t output_failures = 0;  ///< answers saying that the board's output chips had not answered it
+  std::uint64_t overruns = 0;         ///< answers saying that the board had lost bytes
+  std::uint64_t receive_errors = 0;   ///< damaged frames, by the board's count
+  std::uint64_t links_lost = 0;       ///< number of times that the link was lost
+  std::uint64_t bytes = 0;            ///< passed to the system
   /// Most frames under way at once while states are sent: it stays small, as there is no queue. 0: no answers. The two
   /// frames that switch off go out together and do not count.
   std::uint64_t most_unanswered = 0;

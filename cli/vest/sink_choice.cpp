@@ -243,11 +243,17 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
                     choice.port, choice.baud),
         verbosity);
   }
+  if (greeting_ && greeting_->outputs_failed)
+    warn(fmt::format("{}: the board's output chips do not answer it, so all actuators stay off\n  Check the wires SDA "
+                     "and SCL, the chips' addresses and their supply; the board's program is for {} chips.",
+                     choice.port, chips_of(greeting_->actuator_count)),
+         verbosity);
   std::size_t sent = actuator_names.size();
   if (greeting_) {
     const std::size_t told = greeting_->actuator_count;
     sent = driven == Driven::kAllOfTheBoard ? told : std::min(told, sent);
   }
+  outputs_ = greeting_ ? greeting_->actuator_count : sent;
   frame_bytes_ = state_bytes(choice, sent);
   // Two may be on their way when the next one is due.
   if (2 * line_time_s() > choice.ttl_ms / 1e3)
@@ -263,9 +269,18 @@ OpenSink::~OpenSink() = default;
 
 void OpenSink::warn_of_actuators_beyond(std::size_t actuators, Verbosity verbosity) const {
   if (greeting_ && greeting_->actuator_count < actuators)
-    warn(fmt::format("{}: the board drives only the first {} of {} actuators; the others are not felt", choice_.port,
-                     greeting_->actuator_count, actuators),
+    warn(fmt::format(
+             "{}: the board drives only the first {} of {} actuators; the others are not felt\n  Use a map of at "
+             "most {} actuators, or a board whose program is built for more (transport/firmware/README.md).",
+             choice_.port, greeting_->actuator_count, actuators, greeting_->actuator_count),
          verbosity);
+}
+
+std::chrono::microseconds OpenSink::floor() const {
+  std::chrono::microseconds floor = SenderOptions().floor;
+  if (serial_ == nullptr) return floor;
+  const std::chrono::duration<double> line(line_time_s());
+  return std::max({floor, std::chrono::ceil<std::chrono::microseconds>(line), board_time(outputs_)});
 }
 
 void OpenSink::commit() {

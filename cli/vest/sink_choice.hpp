@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -78,6 +79,8 @@ class OpenSink {
   const std::optional<Greeting>& greeting() const { return greeting_; }
   /// Warns if the board drives fewer actuators than `actuators`.
   void warn_of_actuators_beyond(std::size_t actuators, Verbosity verbosity) const;
+  /// Returns the least time between two frames: 5 ms, or longer if the line or the board's chips take longer for one.
+  std::chrono::microseconds floor() const;
   /// Finishes the output file, if there is one.
   void commit();
 
@@ -97,6 +100,7 @@ class OpenSink {
   WireFileSink* file_ = nullptr;
   SerialSink* serial_ = nullptr;
   std::optional<Greeting> greeting_;
+  std::size_t outputs_ = 0;      ///< of the board; if it does not answer, those that frames name
   std::size_t frame_bytes_ = 0;  ///< size of a state frame on the line
 };
 

@@ -47,6 +47,7 @@ void add_to(nlohmann::ordered_json& json, const SenderStatistics& sender, std::u
   json["zeros_acknowledged"] = sender.zeros_acknowledged;
   json["most_unanswered"] = sender.most_unanswered;
   json["fail_safes"] = sender.fail_safes;
+  json["output_failures"] = sender.output_failures;
   json["overruns"] = sender.overruns;
   json["receive_errors"] = sender.receive_errors;
   json["links_lost"] = sender.links_lost;
@@ -112,6 +113,11 @@ int report_losses(const Wearer& wearer, const PlaybackResult::Person& person, Ve
   if (sender.receive_errors + sender.overruns != 0)
     say(fmt::format("the board counted {} damaged frames and lost bytes {} times; check the wires and the baud",
                     sender.receive_errors, sender.overruns));
+  if (sender.output_failures != 0)
+    say(
+        fmt::format("the board's output chips did not answer it, by {}; all actuators were off meanwhile; check the "
+                    "wires SDA and SCL, the chips' addresses and their supply",
+                    counted(sender.output_failures, "answer")));
   if (sender.fail_safes != 0)
     say(fmt::format("the board switched itself off or restarted {} times", sender.fail_safes));
   if (const std::string radio = sink.radio_failure(); !radio.empty()) say(radio);
@@ -145,7 +151,7 @@ nlohmann::ordered_json to_json(const Streamed& streamed, const Invocation& invoc
   json["duration_s"] = playback.duration_s;
   json["missed_deadlines"] = playback.missed_deadlines;
   json["most_late_s"] = playback.most_late_s;
-  json["floor_us"] = SenderOptions().floor.count();
+  json["floor_us"] = first.sink().floor().count();
   add_to(json, total, maps_reloaded);
   json["complete"] = (!interrupted() || streamed.options.playback.loop) && total.links_lost == 0;
   json["link"] = link_of(first);

@@ -57,7 +57,8 @@ struct Checked {
 
 /// Each actuator in turn; says which while it runs.
 Checked run_in_turn(const OpenSink& sink, std::size_t actuators, const CheckOptions& options) {
-  Sender sender(sink.sink(), {}, [&](const std::string& text) { warn(text, options.common.verbosity()); });
+  Sender sender(sink.sink(), {.floor = sink.floor()},
+                [&](const std::string& text) { warn(text, options.common.verbosity()); });
   ActuatorFrame frame;
   Checked checked;
   bool going = true;
@@ -100,16 +101,20 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   const bool acknowledges = sink.sink().acknowledges();
   const bool all_answered = statistics.acknowledged == statistics.sent && statistics.off_acknowledged;
   const bool all_sent = statistics.off_sent && (statistics.superseded == 0 || checked.stopped);
-  const bool good = all_sent && statistics.links_lost == 0 && (!acknowledges || (sink.greeting() && all_answered));
+  const bool good = all_sent && statistics.links_lost == 0 && statistics.output_failures == 0 &&
+                    (!acknowledges || (sink.greeting() && all_answered));
   std::string verdict = "sent " + counted(statistics.sent, "frame");
   if (acknowledges) verdict += fmt::format(", {} acknowledged", statistics.acknowledged);
   if (statistics.links_lost > 0)
     verdict += fmt::format(", the link was lost {}", counted(statistics.links_lost, "time"));
+  if (statistics.output_failures > 0)
+    verdict += fmt::format(", {} say that its output chips do not answer it", statistics.output_failures);
   if (statistics.superseded > 0) verdict += fmt::format(", {} could not be sent in time", statistics.superseded);
   if (const std::string doubt = doubt_about_off(statistics, sink.sink()); !doubt.empty()) verdict += "; " + doubt;
   if (checked.stopped) verdict += fmt::format("; stopped at actuator {} of {}", checked.actuators, actuators);
   if (!good) {
     verdict += ": THE VEST DOES NOT HEAR EVERYTHING";
+    if (statistics.output_failures > 0) verdict += "; check SDA, SCL, the chips' addresses and their supply";
     if (sink.greeting() && statistics.acknowledged <= 2) verdict += "; check that the board takes these --levels";
     verdict += "\n";
   } else if (checked.stopped) {
@@ -128,6 +133,7 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   json["sent"] = statistics.sent;
   json["acknowledged"] = statistics.acknowledged;
   json["receive_errors"] = statistics.receive_errors;
+  json["output_failures"] = statistics.output_failures;
   json["links_lost"] = statistics.links_lost;
   json["off_sent"] = statistics.off_sent;
   json["off_acknowledged"] = statistics.off_acknowledged;

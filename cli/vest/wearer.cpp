@@ -44,7 +44,7 @@ void Wearer::open(const std::function<void(const std::string&)>& tell) {
 }
 
 void Wearer::start(const std::function<void(const std::string&)>& tell) {
-  sender_.emplace(sink_->sink(), SenderOptions{.keep_log = log_.has_value()}, tell);
+  sender_.emplace(sink_->sink(), SenderOptions{.floor = sink_->floor(), .keep_log = log_.has_value()}, tell);
 }
 
 void Wearer::still_here(const std::function<void(const std::string&)>& tell) {

@@ -72,6 +72,7 @@ class PretendedVest : public ActuatorSink {
   bool restarted = false;
   int tries_until_back = 0;
   std::uint8_t receive_errors = 0;
+  bool outputs_failed = false;  ///< then it is off, and says that, too
   std::vector<Acknowledgement> answers;
 
  private:
@@ -83,7 +84,8 @@ class PretendedVest : public ActuatorSink {
       if (told.off && !knows_off) return;
       levels_ = told.off ? Duties(levels_.size(), 0) : told.duty;
       if (silent) return;
-      const Acknowledgement answer = {told.sequence, std::exchange(restarted, false), false, receive_errors};
+      const bool off = std::exchange(restarted, false) || outputs_failed;
+      const Acknowledgement answer = {told.sequence, off, false, receive_errors, outputs_failed};
       if (told.off && answers_offs_late) {
         if (late_) answers.push_back(*late_);
         late_ = answer;
@@ -355,6 +357,19 @@ TEST_F(SenderTest, ABoardThatRestartsIsReportedAndItsNewCountIsNotTakenForDamage
   const SenderStatistics statistics = sender.finish();
   EXPECT_EQ(statistics.fail_safes, 1U);
   EXPECT_EQ(statistics.receive_errors, 0U);
+}
+
+TEST_F(SenderTest, AnswersOfABoardWhoseOutputsFailAreCountedAndAreNoFailSafes) {
+  Sender sender(vest, options(), note);
+  post(sender, {1});
+  until([&] { return vest.told().size() >= 2; });
+  vest.locked([&] { vest.outputs_failed = true; });
+  const std::size_t before = vest.told().size();
+  until([&] { return vest.told().size() >= before + 3; });
+  vest.locked([&] { vest.outputs_failed = false; });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_GE(statistics.output_failures, 2U);
+  EXPECT_EQ(statistics.fail_safes, 0U);
 }
 
 TEST_F(SenderTest, DamagedFramesAreCountedAsTheBoardCountsThemModulo256) {

@@ -19,6 +19,7 @@ constexpr std::size_t kLongestAnswer_bytes = 1 + kGreeting_bytes + kCrc_bytes;
 
 constexpr std::uint8_t kInFailSafe = 1U << 0U;
 constexpr std::uint8_t kOverrun = 1U << 1U;
+constexpr std::uint8_t kOutputsFailed = 1U << 2U;
 
 std::vector<std::uint8_t> seal(std::vector<std::uint8_t> payload) {
   const std::uint16_t crc = crc16(payload);
@@ -39,13 +40,15 @@ std::optional<VestAnswer> decode(std::span<const std::uint8_t> frame) {
     return Acknowledgement{.sequence = byte[1],
                            .was_in_fail_safe = (byte[2] & kInFailSafe) != 0,
                            .overrun = (byte[2] & kOverrun) != 0,
-                           .receive_errors = byte[3]};
+                           .receive_errors = byte[3],
+                           .outputs_failed = (byte[2] & kOutputsFailed) != 0};
   if (length == kGreeting_bytes && byte[0] == 'H')
     return Greeting{.sequence = byte[1],
                     .version = byte[2],
                     .actuator_count = byte[3],
                     .was_in_fail_safe = (byte[4] & kInFailSafe) != 0,
-                    .overrun = (byte[4] & kOverrun) != 0};
+                    .overrun = (byte[4] & kOverrun) != 0,
+                    .outputs_failed = (byte[4] & kOutputsFailed) != 0};
   return std::nullopt;
 }
 
@@ -57,6 +60,17 @@ std::uint8_t ttl_units(int ttl_ms) {
     throw UsageError("--ttl", fmt::format("a vest frame cannot hold {} ms", ttl_ms),
                      fmt::format("choose a multiple of {} from {} to {}", kTtlUnit_ms, kTtlUnit_ms, kMost_ms));
   return static_cast<std::uint8_t>(ttl_ms / kTtlUnit_ms);
+}
+
+std::size_t chips_of(std::size_t actuators) {
+  constexpr std::size_t kChannels = 16;
+  return (actuators + kChannels - 1) / kChannels;
+}
+
+std::chrono::microseconds board_time(std::size_t actuators) {
+  // 66 bytes at 400 kHz are 1.5 ms; the firmware's interrupts make it 1.9 on the simulated board.
+  constexpr std::chrono::microseconds kChip(2000);
+  return kChip * chips_of(actuators);
 }
 
 std::vector<std::uint8_t> encode_state(Quantity quantity, std::span<const std::uint8_t> level, std::uint8_t sequence,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <variant>
@@ -22,6 +23,12 @@ inline constexpr int kTtlUnit_ms = 10;
 /// Converts a ttl to the unit of `encode_state`. Throws `UsageError` with --ttl unless `ttl_ms` is a multiple of 10
 /// from 10 to 2550.
 std::uint8_t ttl_units(int ttl_ms);
+/// A board of more than six actuators drives them through chips of 16 channels each (transport/firmware/README.md).
+/// Returns how many chips that many actuators need.
+std::size_t chips_of(std::size_t actuators);
+/// Returns the longest time that a board takes to pass a frame on to its chips. Frames that come faster are obeyed,
+/// too, but some are replaced by the next before all chips show them.
+std::chrono::microseconds board_time(std::size_t actuators);
 /// A zero alone ends a half-sent frame on the line, and is not a frame itself.
 inline constexpr std::uint8_t kFrameEnd = 0;
 
@@ -39,6 +46,7 @@ struct Greeting {
   std::uint8_t actuator_count = 0;  ///< number of actuators; further levels of a frame are ignored
   bool was_in_fail_safe = false;    ///< as in `Acknowledgement`; also true after a start, until the first frame
   bool overrun = false;             ///< as in `Acknowledgement`
+  bool outputs_failed = false;      ///< as in `Acknowledgement`
 };
 
 using VestAnswer = std::variant<Acknowledgement, Greeting>;

@@ -56,6 +56,32 @@ TEST(VestFrame, HoldsAsManyActuatorsAsItsCountCanSayAndNoMore) {
   }
 }
 
+TEST(VestFrame, OfSixtyFourActuatorsIsSeventyTwoBytes) {
+  EXPECT_EQ(encode_state(Quantity::kDuty, Bytes(64, 200), 9, 20).size(), 72U);
+}
+
+TEST(VestFrame, TakesABoardTwoMillisecondsForEachOfItsChips) {
+  EXPECT_EQ(chips_of(6), 1U);
+  EXPECT_EQ(chips_of(16), 1U);
+  EXPECT_EQ(chips_of(17), 2U);
+  EXPECT_EQ(chips_of(64), 4U);
+  EXPECT_EQ(board_time(16), std::chrono::milliseconds(2));
+  EXPECT_EQ(board_time(64), std::chrono::milliseconds(8));
+}
+
+TEST(VestAnswer, SaysThatTheOutputsHaveFailed) {
+  VestAnswerDecoder decoder;
+  Bytes line = test::acknowledgement(1, 5, 0);
+  for (const Bytes& more : {test::acknowledgement(2, 1, 0), test::greeting(3, 1, 64, 5), test::greeting(4, 1, 64, 3)})
+    line.insert(line.end(), more.begin(), more.end());
+  const std::vector<VestAnswer> answers = decoder.push(line);
+  ASSERT_EQ(answers.size(), 4U);
+  EXPECT_TRUE(std::get<Acknowledgement>(answers[0]).outputs_failed);
+  EXPECT_FALSE(std::get<Acknowledgement>(answers[1]).outputs_failed);
+  EXPECT_TRUE(std::get<Greeting>(answers[2]).outputs_failed);
+  EXPECT_FALSE(std::get<Greeting>(answers[3]).outputs_failed);
+}
+
 TEST(VestAnswer, IsAnAcknowledgement) {
   VestAnswerDecoder decoder;
   // 41 01 03 05, crc AE2E

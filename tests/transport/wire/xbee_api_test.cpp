@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "traces/base/error.hpp"
+#include "transport/wire/vest_frame.hpp"
 
 namespace vestige {
 namespace {
@@ -191,6 +192,11 @@ RC_GTEST_PROP(Xbee, SendsNoSpecialByteUnescaped, (const std::vector<std::uint8_t
   const Bytes frame = xbee_wrap(options, 0x11, payload);
   RC_ASSERT(std::count(frame.begin(), frame.end(), 0x7E) == 1);
   RC_ASSERT(std::count(frame.begin(), frame.end(), 0x11) + std::count(frame.begin(), frame.end(), 0x13) == 0);
+}
+
+TEST(Xbee, CarriesAFrameOfSixtyFourActuatorsInOnePacket) {
+  const Bytes frame = encode_state(Quantity::kDuty, Bytes(64, 200), 1, 20);
+  EXPECT_EQ(xbee_wrap(XbeeOptions(), 1, frame).size(), 72U + 18U);
 }
 
 }  // namespace
