@@ -86,6 +86,72 @@ TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
   EXPECT_THAT(outcome.standard_output, HasSubstr("of them changes"));
 }
 
+/// A built-in layout, and the board that has enough channels for it.
+struct LayoutOnChips {
+  const char* layout;
+  std::size_t motors;
+  int chips;
+  int floor_us;  ///< 5 ms, or a frame's time on the line
+};
+
+class StreamToChips : public test::BoardCommandLine, public ::testing::WithParamInterface<LayoutOnChips> {};
+
+INSTANTIATE_TEST_SUITE_P(, StreamToChips,
+                         ::testing::Values(LayoutOnChips{"torso16", 16, 1, 5000},
+                                           LayoutOnChips{"torso40", 40, 3, 8334}),
+                         [](const auto& test) { return std::string(test.param.layout); });
+
+TEST_P(StreamToChips, WhatTheTimelineSaysHappensAtTheOutputsOfTheChips) {
+  const LayoutOnChips& of = GetParam();
+  const auto channels = static_cast<std::size_t>(16 * of.chips);
+  ASSERT_EQ(run(std::string("vestige map make -q --layout ") + of.layout + " -o map.png").exit_code, 0);
+  record("--map map.png --colliders hug --count 60 --rate 200 --duration 3");
+  ASSERT_EQ(run("vestige replay -q trace.mcap --timeline timeline.csv").exit_code, 0);
+  const test::Outcome outcome =
+      run_with_board("vestige stream trace.mcap --port vest --ttl 2000 --log log.csv --json stream.json",
+                     "vest-atmega1280-" + std::to_string(channels), of.chips);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+
+  const std::vector<Row> expected = changes(read_timeline(folder_ / "timeline.csv"));
+  std::vector<Row> sent = read_log(folder_ / "log.csv");
+  ASSERT_EQ(sent.size(), expected.size());
+  EXPECT_GT(sent.size(), 20U);
+  for (std::size_t i = 0; i < sent.size(); ++i) EXPECT_EQ(sent[i].level, expected[i].level) << i;
+  std::erase_if(sent, [](const Row& row) { return row.state != "sent"; });
+  const std::vector<Row> outputs = read_timeline(folder_ / "pins.csv");
+  ASSERT_EQ(outputs.front().level.size(), channels);
+  std::size_t moved = 0;
+  for (std::size_t motor = 0; motor < channels; ++motor) {
+    const Levels commanded = motor < of.motors ? steps_of(motor, sent) : Levels{0};
+    EXPECT_EQ(steps_of(motor, outputs), commanded) << "motor " << motor + 1;
+    if (commanded.size() > 1) ++moved;
+  }
+  EXPECT_GT(moved, of.motors / 2);
+
+  const nlohmann::json json = json_in("stream.json");
+  EXPECT_EQ(json["acknowledged"], json["sent"]);
+  EXPECT_EQ(json["output_failures"], 0);
+  EXPECT_EQ(json["floor_us"], of.floor_us);
+  EXPECT_EQ(json["link"]["frame_bytes"], 8 + of.motors);
+  EXPECT_EQ(json["link"]["board"]["actuators"], channels);
+}
+
+TEST_F(StreamCommand, ABoardWhoseChipsDoNotAnswerIsReported) {
+  record("--count 60 --rate 200 --duration 1");
+  const test::Outcome outcome = run_with_board(
+      "vestige stream trace.mcap --port vest --json stream.json; streamed=$?\n"
+      "vestige vest check --port vest --seconds 0.05 --json check.json; echo $streamed $?; true",
+      "vest-atmega1280-32", 1);
+  EXPECT_THAT(outcome.standard_output, HasSubstr("3 4\n"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("the board's output chips do not answer it"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("the board's output chips did not answer it, by"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("say that its output chips do not answer it"));
+  EXPECT_GT(json_in("stream.json")["output_failures"], 0);
+  EXPECT_GT(json_in("check.json")["output_failures"], 0);
+  EXPECT_FALSE(json_in("check.json")["good"]);
+  for (const Row& row : read_timeline(folder_ / "pins.csv")) EXPECT_THAT(row.level, Each(0));
+}
+
 TEST_F(StreamCommand, EachOfTwoPeopleFeelsTheirOwnTimelineOnTheirOwnBoard) {
   record(
       "--avatar builtin --name ann --colliders hug --count 60 --rate 500 --duration 2 --avatar builtin --name bob "
@@ -252,6 +318,7 @@ TEST_F(StreamCommand, VestCheckSaysThatItWasStoppedAndWhatTheBoardDoesNotDrive) 
   EXPECT_THAT(outcome.standard_output, HasSubstr("; stopped at actuator "));
   EXPECT_THAT(outcome.standard_output, ::testing::Not(HasSubstr("hears everything")));
   EXPECT_THAT(outcome.standard_error, HasSubstr("the first 6 of 12 actuators"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("Use a map of at most 6 actuators"));
 }
 
 TEST_F(StreamCommand, VestCheckOfAVestThatIsUnpluggedFails) {
