@@ -40,7 +40,7 @@ bool Pca9685::is_asleep() const {
 }
 
 double Pca9685::frequency_hz() const {
-  return kOscillator_hz / kPeriod_counts / (registers_[kPrescale] + 1);
+  return kOscillator_hz / kPeriodCounts / (registers_[kPrescale] + 1);
 }
 
 void Pca9685::start() {
@@ -92,16 +92,16 @@ void Pca9685::set_register(const std::uint8_t address, const std::uint8_t value,
 unsigned Pca9685::high_counts(const std::size_t channel, const OutputEnable enable) const {
   const bool totem_pole = (registers_[kMode2] & kTotemPole) != 0;
   if (!totem_pole) return 0;
-  if (enable == OutputEnable::kHigh) return (registers_[kMode2] & 3U) == 1 ? kPeriod_counts : 0;
+  if (enable == OutputEnable::kHigh) return (registers_[kMode2] & 3U) == 1 ? kPeriodCounts : 0;
   if (is_asleep()) return 0;
   const std::uint8_t* const of = &shown_[4 * channel];
   unsigned counts = 0;
   if ((of[3] & kFull) == 0) {
     const unsigned on = of[0] | (of[1] & 0x0FU) << 8U;
     const unsigned off = of[2] | (of[3] & 0x0FU) << 8U;
-    counts = (of[1] & kFull) != 0 ? kPeriod_counts : (off + kPeriod_counts - on) % kPeriod_counts;
+    counts = (of[1] & kFull) != 0 ? kPeriodCounts : (off + kPeriodCounts - on) % kPeriodCounts;
   }
-  return (registers_[kMode2] & kInverted) != 0 ? kPeriod_counts - counts : counts;
+  return (registers_[kMode2] & kInverted) != 0 ? kPeriodCounts - counts : counts;
 }
 
 }  // namespace vestige::test

@@ -16,7 +16,7 @@ enum class OutputEnable : std::uint8_t { kLow, kHigh };
 class Pca9685 {
  public:
   static constexpr std::size_t kChannels = 16;
-  static constexpr unsigned kPeriod_counts = 4096;
+  static constexpr unsigned kPeriodCounts = 4096;
 
   /// The supply has just come: all outputs off, asleep.
   Pca9685();

@@ -1,5 +1,6 @@
 #include "tests/transport/firmware/pwm_chips.hpp"
 
+#include <avr_extint.h>
 #include <avr_ioport.h>
 #include <avr_twi.h>
 #include <sim_avr.h>
@@ -29,7 +30,7 @@ constexpr unsigned kFirstAddress = 0x40;
 constexpr unsigned kTwiBitsPerByte = 9;  // with the acknowledgement
 constexpr int kClocksToFree = 3;
 constexpr double kClock_hz = 16e6;
-constexpr std::uint64_t kNever_cycles = std::uint64_t{1} << 40U;
+constexpr std::uint64_t kNever = std::uint64_t{1} << 40U;
 
 std::uint8_t as_duty(const unsigned counts) {
   return static_cast<std::uint8_t>(std::min((counts + 8) / 16, 255U));
@@ -62,6 +63,9 @@ void PwmChips::connect(avr_t* const avr, const std::uint64_t power_on_cycle) {
     avr_irq_register_notify(
         avr_iomem_getirq(avr_, address, nullptr, AVR_IOMEM_IRQ_ALL),
         [](avr_irq_t*, std::uint32_t, void* const chips) { static_cast<PwmChips*>(chips)->update(); }, this);
+  // simavr would look at a low pin of an external interrupt (OE's is INT2) anew in every cycle, which takes most of its
+  // time. The firmware uses none of these interrupts.
+  for (std::uint8_t interrupt = 0; interrupt < 3; ++interrupt) avr_extint_set_strict_lvl_trig(avr_, interrupt, 0);
   update();
 }
 
@@ -148,7 +152,7 @@ void PwmChips::pace() {
   if ((avr_->data[kControl] & kControlEnable) == 0) return;  // simavr would go on
   const std::uint64_t bit_cycles = 16 + (2U * avr_->data[kBitRate] << 2U * (avr_->data[kStatus] & 3U));
   const std::uint64_t cycles = bit_cycles * (starting_ ? 1 : kTwiBitsPerByte);
-  avr_cycle_timer_register(avr_, fault_ == BusFault::kNone ? cycles : kNever_cycles, timer, twi_);
+  avr_cycle_timer_register(avr_, fault_ == BusFault::kNone ? cycles : kNever, timer, twi_);
 }
 
 unsigned PwmChips::high_counts(const std::size_t output) const {
