@@ -65,9 +65,10 @@ TEST(SmallTextureBuffers, LeaveFramesThatTouchTooManyMeshletsToTheCpu) {
   const auto compute =
       make_compute_detector(LimitedContext::make({{GL_MAX_TEXTURE_BUFFER_SIZE, 3 * 72}}), pile, map, kCulledByShaders);
   ContactRow row;
+  const int before = LimitedContext::dispatches();
   EXPECT_EQ(compute->detect(test::frame_through(pile, 100), row).pairs_meeting, 300U * 100U);
   for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 299U);
-  EXPECT_EQ(LimitedContext::dispatches(), 2);
+  EXPECT_EQ(LimitedContext::dispatches() - before, 2);
 }
 
 TEST(SmallStorageBlocks, LeaveAnAvatarThatTheyDoNotHoldToTheCpu) {
@@ -77,8 +78,9 @@ TEST(SmallStorageBlocks, LeaveAnAvatarThatTheyDoNotHoldToTheCpu) {
     const auto compute = make_compute_detector(LimitedContext::make({{GL_MAX_SHADER_STORAGE_BLOCK_SIZE, bytes}}), pile,
                                                map, kCulledByShaders);
     ContactRow row;
+    const int before = LimitedContext::dispatches();
     EXPECT_EQ(compute->detect(test::frame_through(pile, 100), row).pairs_meeting, 300U * 100U);
-    EXPECT_EQ(LimitedContext::dispatches(), bytes == 3000 ? 0 : 2);
+    EXPECT_EQ(LimitedContext::dispatches() - before, bytes == 3000 ? 0 : 2);
   }
 }
 
