@@ -175,7 +175,7 @@ bool Sender::may_send(Clock::time_point now) {
 Sender::Clock::time_point Sender::next_chance(Clock::time_point now) {
   if (!linked_) return next_try_;
   Clock::time_point due = now + kIdle;
-  if (has_state_ && !deserted_) due = last_sent_ + options_.refresh;
+  if (has_state_ && !deserted_) due = last_sent_ + std::max(options_.refresh, options_.floor);
   if (has_changed()) due = last_sent_ + options_.floor;
   return std::max(due, now + kLineBusy);
 }
@@ -328,7 +328,7 @@ Sender::OffFrames Sender::send_all_off() {
 }
 
 void Sender::switch_off() try {
-  if (!linked_ && !sink_.reconnect()) return;  // the board's ttl has switched it off
+  if (!linked_ && !sink_.reconnect()) return;  // the ttl has switched it off
   linked_ = true;
   const auto until = Clock::now() + kPatience;
   while (has_changed()) {

@@ -42,7 +42,7 @@ struct SenderStatistics {
   std::uint64_t changes = 0;  ///< frames with a changed state
   std::uint64_t superseded = 0;  ///< changes that were never sent
   std::uint64_t acknowledged = 0;
-  std::uint64_t fail_safes = 0;       ///< answers saying that the board had switched itself off before, but for these
+  std::uint64_t fail_safes = 0;       ///< answers saying that the board had switched itself off, less output_failures
   std::uint64_t output_failures = 0;  ///< answers saying that the board's output chips had not answered it
   std::uint64_t overruns = 0;         ///< answers saying that the board had lost bytes
   std::uint64_t receive_errors = 0;   ///< damaged frames, by the board's count

@@ -185,7 +185,7 @@ constexpr Field kStream[] = {
     {"colliders_left_out", "", "colliders that no message can say in some frame; only over VMC"},
     {"deviation_m", "m", "most that the skin as sent lies from the trace's, an upper bound; only over VMC"},
     {"maps_reloaded", "", "how often a changed map was read again"},
-    {"floor_us", "us", "least time that the sender leaves between two frames"},
+    {"floor_us", "us", "least time that the sender leaves between two frames; of several vests, the first one's"},
     {"latency_us/written/*", "us",
      "from a change, over VMC from a frame's due time, until its last byte was written: median, 95 %, 99 %, most"},
     {"latency_us/acknowledged/*", "us", "from a change until its answer: median, 95 %, 99 %, most; 0: no answers"},

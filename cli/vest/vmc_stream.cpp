@@ -57,6 +57,14 @@ void open(Players& players, const StreamOptions& options, OpenTrace& trace) {
       warn(fmt::format("{}: no program listens there now; frames are sent anyway", player.sender->name()), verbosity);
 }
 
+/// After an error, which tells more than one that may come of this.
+void take_colliders_away(const Players& players) {
+  try {
+    players.front().sender->finish();
+  } catch (const Error&) {
+  }
+}
+
 FramePace play_to(const Players& players, const StreamOptions& options, OpenTrace& trace) {
   Progress progress("Streaming", options.common.verbosity());
   const FrameCalls calls = {
@@ -80,7 +88,13 @@ FramePace play_to(const Players& players, const StreamOptions& options, OpenTrac
             for (const Player& player : players) player.sender->send(frame, time_s, due);
           },
   };
-  FramePace pace = play_frames(trace.reader, options.playback, calls);
+  FramePace pace;
+  try {
+    pace = play_frames(trace.reader, options.playback, calls);
+  } catch (const Error&) {
+    take_colliders_away(players);
+    throw;
+  }
   players.front().sender->finish();
   return pace;
 }

@@ -73,7 +73,8 @@ bool DatagramSender::is_refused(std::span<const std::vector<std::byte>> probes) 
   const Descriptor socket(connected_socket());
   if (socket.value() < 0) return false;
   for (const std::vector<std::byte>& datagram : probes) {
-    if (::send(socket.value(), datagram.data(), datagram.size(), MSG_NOSIGNAL) < 0) return false;
+    if (::send(socket.value(), datagram.data(), datagram.size(), MSG_NOSIGNAL) < 0)
+      return errno == ECONNREFUSED;  // the report about a datagram before
     count(datagram);
   }
   pollfd answer{.fd = socket.value(), .events = POLLIN, .revents = 0};

@@ -2,6 +2,7 @@
 
 #include <sys/socket.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,6 +12,10 @@
 #include "traces/base/host_port.hpp"
 
 namespace vestige {
+
+/// A datagram that no later one corrects is sent so often, so far apart.
+inline constexpr int kFinalTries = 3;
+inline constexpr std::chrono::milliseconds kBetweenFinalTries(20);
 
 /// Where datagrams go, and from which socket.
 struct DatagramRoute {

@@ -15,15 +15,16 @@ namespace vestige {
 
 /// Switches off by datagrams what this program left on: a child process, which outlives it. The child sends the
 /// datagrams if this program ends without a word, even by SIGKILL, or shows no sign of life for the time `silence`.
-/// Datagrams may be lost, so it sends them three times, 20 ms apart.
+/// Datagrams may be lost, so it sends them `kFinalTries` times.
 ///
-/// The child takes no part in Ctrl-C or a hang-up of the terminal, and holds no other file of this program open.
+/// The child takes no part in Ctrl-C or a hang-up of the terminal, ignores SIGTERM, and holds no other file of this
+/// program open.
 class OffWatchdog {
  public:
   /// Throws `Error` if the process cannot be started.
   OffWatchdog(const DatagramRoute& route, const std::vector<std::vector<std::byte>>& off,
               std::chrono::milliseconds silence);
-  /// Ends the child, which then sends nothing.
+  /// Ends the child, which first sends the datagrams if something was left on. Waits for that.
   ~OffWatchdog();
   OffWatchdog(const OffWatchdog&) = delete;
   OffWatchdog& operator=(const OffWatchdog&) = delete;

@@ -1,6 +1,6 @@
 #include "transport/sinks/osc_sink.hpp"
 
-#include <chrono>
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -40,10 +40,18 @@ void OscSink::send(const ActuatorFrame& frame, std::uint8_t) {
 }
 
 void OscSink::send_off(std::uint8_t) {
-  for (int i = 0; i < 3; ++i) {  // no later frame corrects a lost one
-    if (i != 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    send_levels({});
+  std::exception_ptr failure;
+  for (int i = 0; i < kFinalTries; ++i) {
+    if (i != 0) std::this_thread::sleep_for(kBetweenFinalTries);
+    watchdog_.note_on();
+    try {
+      send_levels({});
+      failure = nullptr;
+    } catch (const Error&) {
+      failure = std::current_exception();  // the next one may get through
+    }
   }
+  if (failure) std::rethrow_exception(failure);
   watchdog_.note_off();
 }
 

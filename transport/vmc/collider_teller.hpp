@@ -14,7 +14,7 @@ namespace vestige {
 
 /// Says the colliders of a trace's frames by Vestige's own messages, which `VmcState` takes. Every frame is complete:
 /// it says where each collider is, and that all others of the trace are gone. So a later frame corrects a lost
-/// datagram.
+/// datagram, except that teleports are said once.
 class ColliderTeller {
  public:
   enum class Path : std::uint8_t {

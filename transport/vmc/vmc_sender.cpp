@@ -127,8 +127,8 @@ bool VmcSender::send_messages(std::span<const OscBytes> messages) {
 void VmcSender::finish() {
   if (!colliders_) return;
   const std::vector<OscBytes> messages = colliders_->removals();
-  for (int i = 0; i < 3; ++i) {
-    if (i != 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  for (int i = 0; i < kFinalTries; ++i) {
+    if (i != 0) std::this_thread::sleep_for(kBetweenFinalTries);
     send_messages(messages);
   }
 }

@@ -40,8 +40,8 @@ struct VmcStatistics {
 };
 
 /// Plays a person of a trace to a program that takes the VMC protocol over UDP, as a VR program does: the pose in each
-/// frame, and the colliders if asked to. Each frame is complete, so the next one corrects the loss of a datagram.
-/// A missing receiver is not an error.
+/// frame, and the colliders if asked to. Each frame is complete, so the next one corrects the loss of a datagram,
+/// except of one with a teleport: that collider's path is then a motion. A missing receiver is not an error.
 ///
 /// A copy of the receiver's state, of the same avatar, takes each pose that is sent. So the sender knows how far the
 /// receiver's skin is from the trace's.
@@ -68,7 +68,7 @@ class VmcSender {
   /// Sends a frame. A pose that is missing stays as it was. Throws `Error` as `DatagramSender::send` does, but no
   /// `LinkLost`.
   void send(const TraceFrame& frame, double time_s, Clock::time_point due);
-  /// Says that all colliders are gone, three times, since no later frame corrects a lost datagram.
+  /// Says that all colliders are gone, `kFinalTries` times.
   void finish();
 
   const VmcStatistics& statistics() const { return statistics_; }

@@ -154,7 +154,7 @@ TEST_F(StreamPeople, NoWayLeadsFromTheEndToTheBeginningOfALoop) {
   record("--animation walk --count 3 --rate 1.7 --duration 1.8");
   const auto recorder = record_live({port_});
   const test::Outcome outcome = run("vestige stream sent.mcap --loop --json stream.json" + flag_ +
-                                    "& stream=$!\nsleep 4\nkill -INT $stream; wait $stream");
+                                    "& stream=$!\nsleep 6\nkill -INT $stream; wait $stream");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_GE(json_in("stream.json")["loops"], 1);
   const std::vector<TraceFrame> sent = frames_of("sent.mcap");
@@ -175,7 +175,7 @@ TEST_F(StreamPeople, CtrlCTakesTheCollidersAwayAndIsSaid) {
   record("--count 3 --rate 50 --duration 60");
   const auto recorder = record_live({port_});
   const test::Outcome outcome = run("vestige stream sent.mcap --json stream.json" + flag_ +
-                                    "& stream=$!\nsleep 1.5\nkill -INT $stream; wait $stream");
+                                    "& stream=$!\nsleep 3\nkill -INT $stream; wait $stream");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.standard_error, HasSubstr("stopped after"));
   EXPECT_EQ(json_in("stream.json")["complete"], false);

@@ -191,9 +191,11 @@ TEST(OscSink, SwitchesAllOffAndIgnoresLevelsThatItHasNoActuatorFor) {
 
 TEST(OscSink, SendsWholeNumbersOrSwitchesWhereAskedTo) {
   const Listener listener;
-  OscSink(local(listener.port(), "/{name}", OscValue::kInteger), {"x", "y"}).send({0, {0, 200}}, 0);
+  OscSink numbers(local(listener.port(), "/{name}", OscValue::kInteger), {"x", "y"});
+  numbers.send({0, {0, 200}}, 0);
   EXPECT_THAT(decode(listener.receive()), ElementsAre(Pair("/x", "i 0"), Pair("/y", "i 200")));
-  OscSink(local(listener.port(), "/{name}", OscValue::kBoolean), {"x", "y"}).send({0, {0, 1}}, 0);
+  OscSink switches(local(listener.port(), "/{name}", OscValue::kBoolean), {"x", "y"});
+  switches.send({0, {0, 1}}, 0);
   EXPECT_THAT(decode(listener.receive()), ElementsAre(Pair("/x", "F"), Pair("/y", "T")));
 }
 
@@ -240,6 +242,9 @@ TEST(OscSink, DoesNotMindThatNobodyListens) {
   OscSink sink(local(port), {"a"});
   for (std::uint8_t i = 0; i < 20; ++i) EXPECT_NO_THROW(sink.send({0, {i}}, i));
   EXPECT_TRUE(sink.reconnect());
+  EXPECT_TRUE(sink.is_refused());
+  OscSink of_two_datagrams({"127.0.0.1", port}, std::vector<std::string>(40, "motor"));
+  EXPECT_TRUE(of_two_datagrams.is_refused());
 }
 
 TEST(OscSink, AHostThatNobodyKnowsIsAnErrorWithItsName) {
@@ -289,7 +294,7 @@ pid_t leave_on(std::uint16_t port, End end) {
   if (child != 0) return child;
   {
     OscOptions options = local(port);
-    options.ttl = std::chrono::milliseconds(50);
+    options.ttl = std::chrono::seconds(1);
     OscSink sink(options, {"a"});
     sink.send({0, {255}}, 0);
     end();
@@ -310,6 +315,13 @@ TEST(OscSink, EvenAProgramThatIsKilledLeavesNothingOn) {
   int status = 0;
   ASSERT_EQ(::waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFSIGNALED(status));
+}
+
+TEST(OscSink, ASinkThatIsGivenUpLeavesNothingOn) {
+  const Listener listener;
+  { OscSink(local(listener.port()), {"a"}).send({0, {255}}, 0); }
+  EXPECT_EQ(decode(listener.receive()), kFull);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(decode(listener.receive()), kOff);
 }
 
 TEST(OscSink, AProgramThatIsHeldUpLeavesNothingOnMeanwhile) {
