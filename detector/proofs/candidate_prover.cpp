@@ -51,14 +51,12 @@ struct CandidateProver::Place {
   };
 
   Place(const GlFunctions& functions, std::size_t corners_bytes)
-      : gl(functions), corners(gl, corners_bytes), blocks(gl, kMostBlocks * sizeof(Block)), words(gl, kWordsBytes) {
-    gl.CreateTextures(GL_TEXTURE_BUFFER, 1, &corner_texture);
-    gl.TextureBuffer(corner_texture, GL_RGBA32F, corners.name());
-  }
-  ~Place() {
-    gl.DeleteSync(fence);
-    gl.DeleteTextures(1, &corner_texture);
-  }
+      : gl(functions),
+        corners(gl, corners_bytes),
+        corner_texture(gl, corners.name()),
+        blocks(gl, kMostBlocks * sizeof(Block)),
+        words(gl, kWordsBytes) {}
+  ~Place() { gl.DeleteSync(fence); }
   Place(const Place&) = delete;
   Place& operator=(const Place&) = delete;
 
@@ -74,9 +72,9 @@ struct CandidateProver::Place {
 
   const GlFunctions& gl;
   GlMappedBuffer corners;
+  CornerTexture corner_texture;
   GlMappedBuffer blocks;
   GlMappedBuffer words;
-  GLuint corner_texture = 0;
   GLsync fence = nullptr;  ///< null if the GPU has nothing of this place
   bool has_spheres = false;
   std::size_t meshlets = 0;
@@ -133,7 +131,7 @@ void CandidateProver::begin(std::size_t place, StageClock* clock) {
   if (here == nullptr)
     here = std::make_unique<Place>(gl_, most_meshlets_ * sets_of(options_.method) * sizeof(MeshletCorners));
   filling_ = here.get();
-  gl_.BindTextureUnit(VESTIGE_TEXTURE_CORNERS, here->corner_texture);
+  gl_.BindTextureUnit(VESTIGE_TEXTURE_CORNERS, here->corner_texture.name());
   gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, here->words.name());
   if (options_.stage == ProofStage::kGeometry) {
     gl_.BindVertexArray(vertex_array_);

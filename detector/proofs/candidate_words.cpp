@@ -13,6 +13,15 @@ std::size_t most_meshlets_in_texture(const GlFunctions& gl, Method method) {
   return static_cast<std::size_t>(gl_limit(gl, GL_MAX_TEXTURE_BUFFER_SIZE)) / (kCornerTexels * sets_of(method));
 }
 
+CornerTexture::CornerTexture(const GlFunctions& gl, GLuint buffer) : gl_(gl) {
+  gl_.CreateTextures(GL_TEXTURE_BUFFER, 1, &name_);
+  gl_.TextureBuffer(name_, GL_RGBA32F, buffer);
+}
+
+CornerTexture::~CornerTexture() {
+  gl_.DeleteTextures(1, &name_);
+}
+
 Error unfinished_shader() {
   return {"OpenGL", "the driver ended a shader before its work was done",
           "use --detector cpu, which finds the same contacts, or another --context or --device"};

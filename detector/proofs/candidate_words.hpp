@@ -28,6 +28,22 @@ constexpr std::size_t sets_of(Method method) {
 /// Returns how many meshlets' corners fit into a texture buffer.
 std::size_t most_meshlets_in_texture(const GlFunctions& gl, Method method);
 
+/// The skinned corners in a buffer, as shaders/candidates.glsl fetches them. The context must be current at the
+/// construction and the destruction.
+class CornerTexture {
+ public:
+  /// Precondition: the buffer has its size.
+  CornerTexture(const GlFunctions& gl, GLuint buffer);
+  ~CornerTexture();
+  CornerTexture(const CornerTexture&) = delete;
+  CornerTexture& operator=(const CornerTexture&) = delete;
+  GLuint name() const { return name_; }
+
+ private:
+  const GlFunctions& gl_;
+  GLuint name_ = 0;
+};
+
 /// Returns what to throw if shaders did not do all of their work.
 Error unfinished_shader();
 

@@ -150,13 +150,9 @@ struct GpuCuller::Place {
         words(gl, kWordsBytes) {
     slots.upload(nullptr, kMostSlots * sizeof(Slot), GL_STREAM_COPY);
     corners.upload(nullptr, corners_bytes, GL_STREAM_COPY);
-    gl.CreateTextures(GL_TEXTURE_BUFFER, 1, &corner_texture);
-    gl.TextureBuffer(corner_texture, GL_RGBA32F, corners.name());
+    corner_texture.emplace(gl, corners.name());
   }
-  ~Place() {
-    gl.DeleteSync(fence);
-    gl.DeleteTextures(1, &corner_texture);
-  }
+  ~Place() { gl.DeleteSync(fence); }
   Place(const Place&) = delete;
   Place& operator=(const Place&) = delete;
 
@@ -173,11 +169,11 @@ struct GpuCuller::Place {
   GlBuffer slots;
   GlBuffer corners;
   GlBuffer counts;
-  GlMappedBuffer counted;  ///< a copy of `counts`, after the frame
-  GlMappedBuffer found;    ///< a copy of `slots`, likewise
-  GlMappedBuffer words;    ///< shaders/candidates.glsl
-  GLuint corner_texture = 0;
-  GLsync fence = nullptr;  ///< null if the GPU has nothing of this place
+  GlMappedBuffer counted;                       ///< a copy of `counts`, after the frame
+  GlMappedBuffer found;                         ///< a copy of `slots`, likewise
+  GlMappedBuffer words;                         ///< shaders/candidates.glsl
+  std::optional<CornerTexture> corner_texture;  ///< made when `corners` has its size
+  GLsync fence = nullptr;                       ///< null if the GPU has nothing of this place
   std::size_t segment_count = 0;
 };
 
@@ -313,7 +309,7 @@ void GpuCuller::start(const Place& place, const Margins& margins, const Programs
 
   bind(VESTIGE_BINDING_FOUND, place.found.name());
   bind(VESTIGE_BINDING_CAPTURED, place.words.name());
-  gl_.BindTextureUnit(VESTIGE_TEXTURE_CORNERS, place.corner_texture);
+  gl_.BindTextureUnit(VESTIGE_TEXTURE_CORNERS, place.corner_texture->name());
   gl_.ProgramUniform1f(programs.prove.name(), VESTIGE_UNIFORM_CORNER_ERROR, margins.corner_m);
   gl_.UseProgram(programs.prove.name());
   gl_.BindBuffer(GL_DISPATCH_INDIRECT_BUFFER, place.counts.name());
