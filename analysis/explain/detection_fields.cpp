@@ -118,6 +118,9 @@ constexpr Field kReplay[] = {
     {"unsure", "", "pairs that the filter passed to exact arithmetic"},
     {"texture_hash", "",
      "SHA-256 of all contacts' triangle, t and actuator; equal: equal to the bit; of several people SHA-256 of theirs"},
+    {"contacts_hash", "",
+     "SHA-256 of all contacts' frame, collider, triangle, t and actuator; equal to that of the live session which the "
+     "trace records: it was felt so"},
     {"pairs_tested", "", "pairs of segment and triangle that were tested"},
     {"pairs_captured", "", "of them, pairs that shaders could not reject"},
     {"pairs_meeting", "", "of them, pairs that meet"},
@@ -135,6 +138,7 @@ constexpr Field kReplay[] = {
     {"avatars/name", "", "the people of the trace, in its order; empty: one whom the trace does not name"},
     {"avatars/contacts", "", "contacts on this person"},
     {"avatars/texture_hash", "", "texture_hash of this person"},
+    {"avatars/contacts_hash", "", "contacts_hash of this person"},
     {"avatars/non_finite_frames", "", "frames whose pose of this person is missing or has NaN or infinity"},
     {"avatars/actuators/name", "", "name of an actuator of this person's map, in its order"},
     {"avatars/actuators/contacts", "", "contacts on its region"},

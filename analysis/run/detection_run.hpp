@@ -37,6 +37,13 @@ class DetectionRun {
   DetectionRun(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Detector& detector)
       : DetectionRun(std::vector<DetectedPerson>{{0, avatar, detector}}, collider_ids) {}
 
+  /// From now on, the colliders are those of `collider_ids`, which holds all ids before: for input whose ids are not
+  /// known beforehand. `before` is the frame given before; what moves from it to the next frame is found as ever.
+  void use_ids(std::span<const std::uint32_t> collider_ids, const TraceFrame& before) {
+    colliders_ = ColliderMoves(collider_ids);
+    colliders_.next(before);
+  }
+
   /// Only says where everything comes from: nothing is detected in this frame. Makes room for the rows.
   void begin(const TraceFrame& first) {
     colliders_.next(first);

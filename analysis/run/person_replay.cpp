@@ -24,7 +24,8 @@ void PersonReplay::check_skinning(const TraceFrame& frame, const DetectorFrame& 
   if (!pose.nodes.empty()) result_.skinning.add(plan_.avatar, pose, built, detector);
 }
 
-void PersonReplay::take(const DetectorFrame& frame, ContactRow& row, ContactRow* other) {
+void PersonReplay::take(const DetectorFrame& frame, ContactRow& row, ContactRow* other,
+                        std::span<const std::uint32_t> ids) {
   follow_map_changes(frame.time_s);
   if (changed_map_ != nullptr) {
     look_up_anew(*changed_map_, row);
@@ -36,6 +37,7 @@ void PersonReplay::take(const DetectorFrame& frame, ContactRow& row, ContactRow*
     ++result_.contacts_of_actuator[contact.actuator];
   }
   hash_.add(row);
+  contacts_hash_.add(frame.index, row, ids);
   if (plan_.timeline == nullptr) return;
   const ActuatorFrame& driven = plan_.drive->next(frame.time_s, row, &frame);
   result_.any_vibrates |= std::ranges::any_of(driven.duty, [](std::uint8_t duty) { return duty != 0; });
@@ -53,6 +55,7 @@ void PersonReplay::follow_map_changes(double time_s) {
 
 PersonResult PersonReplay::finish() {
   result_.texture_hash = hash_.hex();
+  result_.contacts_hash = contacts_hash_.hex();
   result_.origin_changes = builder_.origin_changes();
   result_.non_finite_frames = builder_.non_finite_frames();
   result_.non_finite_segments = builder_.non_finite_segments();

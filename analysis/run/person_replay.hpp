@@ -12,6 +12,7 @@
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
+#include "detector/output/contacts_hash.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "traces/timeline/timeline.hpp"
 
@@ -44,7 +45,8 @@ struct PersonResult {
   std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: contacts on skin that no actuator covers
   bool any_vibrates = false;                        ///< whether any actuator's duty was more than 0; of a timeline only
   std::string texture_hash;
-  SkinningError skinning;  ///< of a few evenly spaced frames
+  std::string contacts_hash;  ///< by `ContactsHash`
+  SkinningError skinning;     ///< of a few evenly spaced frames
 };
 
 /// Takes one person through a replay: builds the frames, and counts and turns into a timeline what was found in them.
@@ -61,9 +63,9 @@ class PersonReplay {
   /// Compares how `detector` skins a frame. Does nothing if the pose is missing.
   void check_skinning(const TraceFrame& frame, const DetectorFrame& built, Detector& detector);
 
-  /// Takes the row of a frame. After a change of the map it looks up the row's actuators anew, and those of `other`,
-  /// the row of another detector, unless that is null.
-  void take(const DetectorFrame& frame, ContactRow& row, ContactRow* other);
+  /// Takes the row of a frame, whose columns belong to the colliders `ids`. After a change of the map it looks up the
+  /// row's actuators anew, and those of `other`, the row of another detector, unless that is null.
+  void take(const DetectorFrame& frame, ContactRow& row, ContactRow* other, std::span<const std::uint32_t> ids);
 
   PersonResult finish();
 
@@ -75,6 +77,7 @@ class PersonReplay {
   FrameBuilder builder_;
   const ActuatorMap* changed_map_ = nullptr;
   TextureHash hash_;
+  ContactsHash contacts_hash_;
   PersonResult result_;
 };
 

@@ -224,7 +224,7 @@ class Replay {
     ContactRow* const other = plan_.expectation.detectors != nullptr ? &expected_.rows[i] : nullptr;
     const auto avatar = static_cast<std::uint16_t>(person + 1);
     result_.work += before_.work[i];
-    people_[person].take(frame, row, other);
+    people_[person].take(frame, row, other, trace_.collider_ids());
     if (other != nullptr) result_.comparison->add(row, *other);
     if (recorded_) result_.comparison->add(row, recorded_->row_of(frame.index, avatar));
     if (plan_.contacts != nullptr) plan_.contacts->write(avatar, frame, row, trace_.collider_ids());
@@ -234,9 +234,11 @@ class Replay {
   void finish() {
     if (size_.is_alone()) result_.detection_s += building_s_;  // several threads had it within their time
     std::vector<std::string> hashes;
+    std::vector<std::string> contacts_hashes;
     for (PersonReplay& person : people_) {
       const PersonResult& found = result_.people.emplace_back(person.finish());
       hashes.push_back(found.texture_hash);
+      contacts_hashes.push_back(found.contacts_hash);
       result_.contacts += found.contacts;
       result_.origin_changes += found.origin_changes;
       result_.non_finite_frames += found.non_finite_frames;
@@ -246,6 +248,7 @@ class Replay {
             std::min(*found.first_non_finite, result_.first_non_finite.value_or(*found.first_non_finite));
     }
     result_.texture_hash = texture_hash_of(hashes);
+    result_.contacts_hash = texture_hash_of(contacts_hashes);
     if (!recorded_ || result_.interrupted) return;
     result_.comparison->missing += recorded_->strangers();
     result_.comparison->expected += recorded_->strangers();

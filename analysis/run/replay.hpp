@@ -42,6 +42,7 @@ struct ReplayResult {
   std::uint64_t non_finite_segments = 0;
   std::optional<std::uint64_t> first_non_finite;  ///< index of the first frame with a non-finite pose or segment
   std::string texture_hash;                       ///< `texture_hash_of` the people's
+  std::string contacts_hash;                      ///< `texture_hash_of` the people's hashes of contacts
   double reading_s = 0;                           ///< decoding the trace
   /// Whole round trips. If there are several threads, all that they do meanwhile: they read and write beside it.
   double detection_s = 0;

@@ -91,7 +91,7 @@ LiveCounts record_from_lines(const Avatar& avatar, Recorder& recorder, const Liv
 
 LiveCounts record_from_ports(const LiveChoice& choice, std::span<const LivePerson> people, Recorder& recorder,
                              const LiveSettings& settings, const glm::dvec3& origin_m, Verbosity verbosity) {
-  std::deque<VmcState> states;
+  std::deque<LiveState> states;
   std::deque<UdpReceiver> receivers;
   std::vector<LiveSource> sources;
   sources.reserve(people.size());
@@ -109,8 +109,8 @@ LiveCounts record_from_ports(const LiveChoice& choice, std::span<const LivePerso
   const LiveCounts counts = record_states(sources, thread, settings);
   thread.stop();
   for (std::size_t k = 0; k < people.size(); ++k) {
-    warn_of(states[k].problems(), choice.sources[k], verbosity);
-    report_bones(states[k], people[k].avatar.humanoid, choice.sources[k], verbosity);
+    warn_of(states[k].vmc().problems(), choice.sources[k], verbosity);
+    report_bones(states[k].vmc(), people[k].avatar.humanoid, choice.sources[k], verbosity);
   }
   if (counts.ids_clash)
     warn(

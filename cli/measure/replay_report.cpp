@@ -67,6 +67,7 @@ nlohmann::ordered_json to_json(std::size_t i, const PersonResult& result, const 
   if (const Timelines::One* timeline = run.timelines.find(i)) json["law"] = timeline->drives.to_json();
   json["contacts"] = result.contacts;
   json["texture_hash"] = result.texture_hash;
+  json["contacts_hash"] = result.contacts_hash;
   json["non_finite_frames"] = result.non_finite_frames;
   json["non_finite_segments"] = result.non_finite_segments;
   json["actuators"] = actuators_of(person, result);
@@ -129,6 +130,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayRun& run,
   json["contacts"] = result.contacts;
   json["unsure"] = result.work.unsure;
   json["texture_hash"] = result.texture_hash;
+  json["contacts_hash"] = result.contacts_hash;
   json["pairs_tested"] = result.work.pairs_tested;
   if (captures(detector)) {
     json["pairs_captured"] = result.work.pairs_captured;

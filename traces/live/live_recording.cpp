@@ -8,13 +8,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 
 #include "traces/base/error.hpp"
 #include "traces/base/nanoseconds.hpp"
+#include "traces/live/live_scene.hpp"
 
 namespace vestige {
 
@@ -115,6 +114,7 @@ class StateRecording {
  public:
   StateRecording(std::span<const LiveSource> sources, RecordingThread& out, const LiveSettings& settings)
       : sources_(sources),
+        scene_(states_of(sources)),
         out_(out),
         settings_(settings),
         frames_(settings.duration_s ? std::max(1.0, std::round(*settings.duration_s * settings.rate_hz)) : INFINITY) {
@@ -185,7 +185,7 @@ class StateRecording {
     TraceFrame frame;
     frame.index = index_;
     frame.time_ns = time_of(index_);
-    std::vector<std::vector<std::uint32_t>> teleported = show(frame);
+    const std::vector<std::vector<std::uint32_t>> teleported = scene_.show(frame);
     if (settings_.complete) settings_.complete(frame);
     const Noted before = noted_;
     ++index_;
@@ -195,31 +195,9 @@ class StateRecording {
       return;
     }
     // The frame was not taken, so the next frame must carry its notes.
-    for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i].state.mark_teleported(std::move(teleported[i]));
+    for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i].state.mark_teleported(teleported[i]);
     noted_ = before;
     ++late_;
-  }
-
-  /// Returns in `frame` the states of all sources. Returns which ids each has teleported.
-  std::vector<std::vector<std::uint32_t>> show(TraceFrame& frame) {
-    std::vector<std::vector<std::uint32_t>> teleported(sources_.size());
-    frame.poses.clear();
-    TraceFrame shown;
-    for (std::size_t i = 0; i < sources_.size(); ++i) {
-      sources_[i].state.show(shown);
-      teleported[i] = shown.teleported;
-      frame.poses.push_back(shown.poses.front());
-      const auto keep = [&](std::uint32_t id) { return source_of_.try_emplace(id, i).first->second == i; };
-      for (const ColliderSample& collider : shown.colliders) {
-        if (keep(collider.id))
-          frame.colliders.push_back(collider);
-        else
-          counts_.ids_clash = true;
-      }
-      std::ranges::copy_if(shown.teleported, std::back_inserter(frame.teleported), keep);
-    }
-    std::ranges::sort(frame.colliders, {}, &ColliderSample::id);
-    return teleported;
   }
 
   /// Returns the losses since the last notes, and the markers.
@@ -227,8 +205,8 @@ class StateRecording {
     std::vector<RecordingNote> notes;
     Noted now = {.late = late_};
     for (const LiveSource& source : sources_) {
-      notes.insert(notes.end(), source.state.markers().begin(), source.state.markers().end());
-      now.input += source.state.malformed() + source.datagrams.overflowed();
+      notes.insert(notes.end(), source.state.vmc().markers().begin(), source.state.vmc().markers().end());
+      now.input += source.state.vmc().malformed() + source.datagrams.overflowed();
     }
     note_frames(notes, now.late - noted_.late);
     note(notes, kInput, now.input - noted_.input);
@@ -237,17 +215,26 @@ class StateRecording {
   }
 
   LiveCounts counts() const {
-    LiveCounts counts = counts_;
+    LiveCounts counts;
     counts.frames = made_;
     counts.late = late_;
+    counts.ids_clash = scene_.ids_clash();
     for (const LiveSource& source : sources_) {
-      counts.malformed += source.state.malformed();
+      counts.malformed += source.state.vmc().malformed();
       counts.overflowed += source.datagrams.overflowed();
     }
     return counts;
   }
 
+  static std::vector<LiveState*> states_of(std::span<const LiveSource> sources) {
+    std::vector<LiveState*> states;
+    states.reserve(sources.size());
+    for (const LiveSource& source : sources) states.push_back(&source.state);
+    return states;
+  }
+
   std::span<const LiveSource> sources_;
+  LiveScene scene_;
   std::vector<pollfd> places_;
   RecordingThread& out_;
   const LiveSettings& settings_;
@@ -258,8 +245,6 @@ class StateRecording {
   std::uint64_t made_ = 0;
   std::uint64_t late_ = 0;
   Noted noted_;
-  LiveCounts counts_;
-  std::unordered_map<std::uint32_t, std::size_t> source_of_;  ///< of each collider's id: who sent it first
 };
 
 }  // namespace

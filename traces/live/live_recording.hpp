@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "traces/live/live_ndjson.hpp"
+#include "traces/live/live_state.hpp"
 #include "traces/live/udp_receiver.hpp"
-#include "traces/live/vmc_state.hpp"
 #include "traces/recording/recording_thread.hpp"
 
 namespace vestige {
@@ -28,7 +28,7 @@ struct LiveSettings {
 /// Where the motion of a person comes from, and colliders.
 struct LiveSource {
   UdpReceiver& datagrams;
-  VmcState& state;
+  LiveState& state;
 };
 
 struct LiveCounts {
@@ -45,10 +45,9 @@ struct LiveCounts {
 /// trace: a lost line as one message of /pose and one of /colliders. Throws `Error` if reading or writing failed.
 LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out, const LiveSettings& settings);
 
-/// Records frames of the latest states, at absolute times of `rate_hz` since the first datagram that changed one of
-/// them. Each source is a person's, in their order. An id of a collider belongs to the source that sent it
-/// first, and colliders and teleports of others with this id are left out. A frame whose time has passed by more than
-/// 20 ms is left out. The trace counts lost frames as /pose and /colliders, and lost datagrams as `input`.
+/// Records the newest whole frames of all sources, joined by a `LiveScene`, at absolute times of `rate_hz` since the
+/// first one. Each source is a person's, in their order. A frame whose time has passed by more than 20 ms is left out.
+/// The trace counts lost frames as /pose and /colliders, and lost datagrams as `input`.
 LiveCounts record_states(std::span<const LiveSource> sources, RecordingThread& out, const LiveSettings& settings);
 
 }  // namespace vestige

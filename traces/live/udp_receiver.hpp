@@ -1,5 +1,9 @@
 #pragma once
 
+#include <netinet/in.h>
+
+#include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,6 +14,26 @@
 #include "traces/base/host_port.hpp"
 
 namespace vestige {
+
+/// The socket that a datagram came from.
+struct UdpAddress {
+  std::array<std::byte, sizeof(sockaddr_in6)> bytes = {};  ///< as the system gives it, then zeros
+
+  bool operator==(const UdpAddress&) const = default;
+};
+
+/// Returns "127.0.0.1:39539".
+std::string to_string(const UdpAddress& address);
+
+struct Datagram {
+  using Clock = std::chrono::steady_clock;
+
+  std::span<const std::byte> bytes;
+  /// When the system received it, however long it then waited to be read. The system's time stamp is converted by the
+  /// difference of both clocks when it is read.
+  Clock::time_point arrived = {};
+  UdpAddress sender = {};
+};
 
 /// Receives datagrams on a port.
 class UdpReceiver {
@@ -22,8 +46,8 @@ class UdpReceiver {
 
   /// The descriptor for `poll`.
   int descriptor() const { return socket_; }
-  /// Returns the next datagram that has arrived, if there is one; valid until the next call. Never waits.
-  std::optional<std::span<const std::byte>> next();
+  /// Returns the next datagram that has arrived, if there is one; its bytes are valid until the next call. Never waits.
+  std::optional<Datagram> next();
   /// Number of datagrams that the system discarded because they were not read in time.
   std::uint64_t overflowed() const { return overflowed_; }
 

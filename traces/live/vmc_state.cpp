@@ -56,6 +56,12 @@ std::uint32_t id(const OscMessage& message) {
   return static_cast<std::uint32_t>(*value);
 }
 
+/// Whether a message /VMC/Ext/OK says that there is a frame.
+bool is_ready(const OscMessage& message) {
+  const auto* value = message.arguments.empty() ? nullptr : std::get_if<std::int32_t>(&message.arguments[0]);
+  return value == nullptr || *value != 0;
+}
+
 const std::string& text(const OscMessage& message) {
   const auto* value = message.arguments.empty() ? nullptr : std::get_if<std::string>(&message.arguments[0]);
   if (value == nullptr) throw Malformed(fmt::format("{}: its first argument is not a text", message.address));
@@ -74,29 +80,43 @@ VmcState::VmcState(const Avatar& avatar, const glm::dvec3& origin_m, const Stanc
   top_local_ = pose_.nodes[skeleton_.top];
 }
 
-bool VmcState::take(std::span<const std::byte> datagram) {
+VmcContent VmcState::check(std::span<const OscMessage> messages) const {
+  VmcContent content;
+  std::size_t colliders = colliders_.size();
+  std::size_t markers = markers_.size();
+  for (const OscMessage& message : messages) {
+    content.vmc = content.vmc || message.address.starts_with("/VMC/");
+    if (message.address == "/VMC/Ext/Bone/Pos" || message.address == "/VMC/Ext/Root/Pos") {
+      text(message);
+      placement_of(message);
+      content.pose = true;
+    } else if (message.address == "/VMC/Ext/OK") {
+      content.tells_end = true;
+      content.ends = content.ends || is_ready(message);
+    } else if (message.address == "/vestige/collider") {
+      id(message);
+      for (std::size_t i = 1; i <= 3; ++i) number(message, i);
+      radius(message);
+      if (!colliders_.contains(id(message)) && ++colliders > kMostColliders)
+        throw Malformed("there are already a million colliders");
+      content.vestige = true;
+    } else if (message.address == "/vestige/collider/remove" || message.address == "/vestige/teleport") {
+      id(message);
+      content.vestige = true;
+    } else if (message.address == "/vestige/marker") {
+      text(message);
+      if (++markers > kMostMarkers) throw Malformed("there are already a thousand markers since the last frame");
+      content.vestige = true;
+    }
+  }
+  return content;
+}
+
+bool VmcState::take(std::span<const std::byte> datagram, const Admit& admit) {
   try {
     const std::vector<OscMessage> messages = decode_osc_packet(datagram);
-    // All messages must be valid before one of them counts.
-    std::size_t colliders = colliders_.size();
-    std::size_t markers = markers_.size();
-    for (const OscMessage& message : messages) {
-      if (message.address == "/VMC/Ext/Bone/Pos" || message.address == "/VMC/Ext/Root/Pos") {
-        text(message);
-        placement_of(message);
-      } else if (message.address == "/vestige/collider") {
-        id(message);
-        for (std::size_t i = 1; i <= 3; ++i) number(message, i);
-        radius(message);
-        if (!colliders_.contains(id(message)) && ++colliders > kMostColliders)
-          throw Malformed("there are already a million colliders");
-      } else if (message.address == "/vestige/collider/remove" || message.address == "/vestige/teleport") {
-        id(message);
-      } else if (message.address == "/vestige/marker") {
-        text(message);
-        if (++markers > kMostMarkers) throw Malformed("there are already a thousand markers since the last frame");
-      }
-    }
+    const VmcContent content = check(messages);  // all messages must be valid before one of them counts
+    if (admit && !admit(content)) return false;
     bool changed = false;
     for (const OscMessage& message : messages) changed = apply(message) || changed;
     return changed;

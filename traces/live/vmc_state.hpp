@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <map>
 #include <set>
@@ -18,11 +19,21 @@
 
 namespace vestige {
 
+/// What the messages of a datagram are about.
+struct VmcContent {
+  bool vmc = false;        ///< any of VMC's
+  bool pose = false;       ///< of a bone or the root
+  bool vestige = false;    ///< of a collider, a teleport or a marker
+  bool tells_end = false;  ///< /VMC/Ext/OK, with any value: the sender says where its frames end
+  bool ends = false;       ///< /VMC/Ext/OK, unless it says 0: a frame ends with this datagram
+};
+
 /// The pose of the avatar, as a VR program sends it by the Virtual Motion Capture protocol (https://protocol.vmc.info),
 /// and the positions of the colliders. Datagrams change the state; a frame shows the current state.
 ///
 ///     /VMC/Ext/Root/Pos  ,sfffffff(fff fff)  name, position, rotation x y z w; scale and offset of 2.1 are ignored
 ///     /VMC/Ext/Bone/Pos  ,sfffffff           Unity's HumanBodyBones, position, rotation x y z w, in its parent
+///     /VMC/Ext/OK        ,i and more         a frame ends; 0: there is none yet
 ///
 ///     /vestige/collider  ,ifff or ,iddd      id, x, y, z: its position, in metres, in glTF's axes
 ///                        ,iffff or ,idddd    the same, then its radius in metres; without it, it is a point
@@ -40,15 +51,16 @@ class VmcState {
   /// `Error` if the avatar has no bone of a human body, or does not stand (`AvatarFacing::lies_deg`).
   VmcState(const Avatar& avatar, const glm::dvec3& origin_m, const Stance& stance = {});
 
-  /// Takes one datagram. A malformed datagram changes nothing and is counted. Returns whether the datagram changed the
-  /// state.
-  bool take(std::span<const std::byte> datagram);
+  /// Returns whether a valid datagram counts. It is called before the datagram changes anything.
+  using Admit = std::function<bool(const VmcContent&)>;
+
+  /// Takes one datagram. A malformed datagram changes nothing and is counted. Nor does one change anything for which
+  /// `admit` returns false. Returns whether the datagram changed the state.
+  bool take(std::span<const std::byte> datagram, const Admit& admit = {});
 
   /// Returns in `frame` the state, with one pose and by ascending ids, without number and time. Reports each teleport
   /// once.
   void show(TraceFrame& frame);
-  /// Sets teleports that could not be passed on, for the next frame.
-  void mark_teleported(std::vector<std::uint32_t> ids) { teleported_ = std::move(ids); }
   /// The markers since `forget_markers`; 1000 at most, further ones count as malformed.
   const std::vector<RecordingNote>& markers() const { return markers_; }
   void forget_markers() { markers_.clear(); }
@@ -61,6 +73,8 @@ class VmcState {
   const std::set<std::string>& bones() const { return bones_; }
 
  private:
+  /// Returns what the messages are about. Throws `mcap::Malformed` unless all of them are valid.
+  VmcContent check(std::span<const OscMessage> messages) const;
   bool apply(const OscMessage& message);
   VmcPlacement placement_of(const OscMessage& message) const;
   bool move_bone(const std::string& name, const VmcPlacement& placement);

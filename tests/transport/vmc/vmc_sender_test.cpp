@@ -138,9 +138,10 @@ class VmcSending : public ::testing::Test {
   /// Returns what the receiver shows after all that has arrived.
   TraceFrame received() {
     while (const auto datagram = in_.next()) {
-      EXPECT_LE(datagram->size(), 1400U);
-      last_ = std::string(reinterpret_cast<const char*>(datagram->data()), datagram->size());
-      state_.take(*datagram);
+      const std::span<const std::byte> bytes = datagram->bytes;
+      EXPECT_LE(bytes.size(), 1400U);
+      last_ = std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      state_.take(bytes);
     }
     EXPECT_EQ(state_.malformed(), 0U);
     TraceFrame frame;

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "traces/live/udp_receiver.hpp"
+#include "traces/live/vmc_state.hpp"
+#include "traces/recording/frame_ring.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/stance.hpp"
+#include "traces/scene/trace.hpp"
+
+namespace vestige {
+
+/// What a VR program sends (`VmcState`), as whole frames: a frame that was told in part is not shown.
+///
+/// A datagram that ends a frame (/VMC/Ext/OK) makes all whole that came before. So does a datagram without a message of
+/// the pose, unless a pose was begun and has not ended: colliders may come faster than poses. If a sender never says
+/// where its frames end, each of its datagrams is whole. A pose that has not ended after 0.1 s is taken as it is, since
+/// its end was lost.
+class LiveState {
+ public:
+  using Clock = Datagram::Clock;
+
+  /// kAny: whoever sends to the port is heard. kOneAtATime: of poses, and of colliders, only the first sender is heard,
+  /// until it has been silent for a second. One program may send poses and another colliders.
+  enum class Senders : std::uint8_t { kAny, kOneAtATime };
+
+  /// As `VmcState`.
+  LiveState(const Avatar& avatar, const glm::dvec3& origin_m, const Stance& stance = {},
+            Senders senders = Senders::kAny);
+
+  /// Takes a datagram. Returns whether there is a new whole frame.
+  bool take(const Datagram& datagram);
+
+  /// Returns in `frame` the newest whole frame, with one pose and by ascending ids, without number and time. Reports
+  /// each teleport once. Before the first whole frame, the avatar is in its rest pose.
+  void show(TraceFrame& frame);
+  /// Adds teleports that were shown and not passed on, for the next frame.
+  void mark_teleported(std::span<const std::uint32_t> ids);
+
+  std::uint64_t frames() const { return frames_; }                  ///< whole ones so far
+  Clock::time_point arrived() const { return arrived_; }            ///< when the newest one had arrived
+  std::uint64_t poses() const { return poses_; }                    ///< whole frames so far that told the pose
+  Clock::time_point pose_arrived() const { return pose_arrived_; }  ///< when the newest of these had arrived
+  /// Whether whole frames without a pose came between the newest pose and the one before.
+  bool came_between() const { return came_between_; }
+  /// Returns once whether no motion leads to the newest frame: it is the first one with a pose, or the first one that
+  /// is known to be whole.
+  bool take_beginning();
+
+  /// Datagrams left out because of `Senders::kOneAtATime`, and who sent the first of them.
+  std::uint64_t left_out() const { return left_out_; }
+  const std::optional<UdpAddress>& stranger() const { return stranger_; }
+
+  /// What was taken, the markers, and the faults.
+  const VmcState& vmc() const { return state_; }
+  void forget_markers() { state_.forget_markers(); }
+
+ private:
+  struct Speaker {
+    std::optional<UdpAddress> address;
+    Clock::time_point heard;
+
+    bool admits(const Datagram& datagram);
+  };
+
+  bool admits(const VmcContent& content, const Datagram& datagram);
+  /// Whether all that was told is whole with a datagram of this content.
+  bool completes(const VmcContent& content, Clock::time_point arrived);
+  /// Keeps what is whole, before a part of a frame is told.
+  void keep();
+  void note_whole(Clock::time_point arrived);
+
+  VmcState state_;
+  Senders senders_;
+  Speaker of_pose_;
+  Speaker of_colliders_;
+  bool tells_end_ = false;        ///< the sender says where frames end
+  bool is_told_in_part_ = false;  ///< the state holds more than is whole, which is in `kept_`
+  bool has_new_pose_ = false;     ///< the state holds a pose that is newer than the newest whole one
+  bool begins_ = false;           ///< for `take_beginning`
+  Clock::time_point part_began_;
+  TraceFrame kept_;
+  std::vector<std::uint32_t> teleported_;  ///< of whole frames, not shown yet
+  std::uint64_t frames_ = 0;
+  Clock::time_point arrived_;
+  std::uint64_t poses_ = 0;
+  Clock::time_point pose_arrived_;
+  std::uint64_t frames_at_pose_ = 0;
+  bool came_between_ = false;
+  std::uint64_t left_out_ = 0;
+  std::optional<UdpAddress> stranger_;
+};
+
+}  // namespace vestige
