@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   add_record(program, invocation);
   add_replay(program, invocation);
   add_stream(program, invocation);
+  add_live(program, invocation);
   add_vest(program, invocation);
   add_sweep(program, invocation);
   add_growth(program, invocation);

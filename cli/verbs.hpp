@@ -27,6 +27,7 @@ void add_export(CLI::App& program, Invocation& invocation);
 void add_import(CLI::App& program, Invocation& invocation);
 void add_cat(CLI::App& program, Invocation& invocation);
 void add_stream(CLI::App& program, Invocation& invocation);
+void add_live(CLI::App& program, Invocation& invocation);
 void add_vest(CLI::App& program, Invocation& invocation);
 void add_explain(CLI::App& program, Invocation& invocation);
 void add_avatar(CLI::App& program, Invocation& invocation);

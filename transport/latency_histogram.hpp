@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace vestige {
@@ -17,6 +18,12 @@ class LatencyHistogram {
   /// most 1 % too high; 0 if there are no latencies.
   double quantile_us(double share) const;
   double max_us() const { return max_us_; }
+  /// Calls `take` with each class that is not empty, in order: its upper end, in microseconds, and its count.
+  template <typename Take>
+  void for_each_class(const Take& take) const {
+    for (std::size_t i = 0; i < kClasses; ++i)
+      if (counts_[i] != 0) take(upper_end_us(i), counts_[i]);
+  }
 
  private:
   static constexpr std::size_t kClasses = 2080;

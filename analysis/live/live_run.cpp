@@ -64,8 +64,7 @@ class LiveRun {
   }
 
   Clock::time_point tick_time(std::uint64_t tick) const {
-    const double time_s = static_cast<double>(tick) / *options_.rate_hz;
-    return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time_s));
+    return start_ + std::chrono::nanoseconds(std::llround(static_cast<double>(tick) / *options_.rate_hz * 1e9));
   }
 
   /// Waits until something arrives or is due.

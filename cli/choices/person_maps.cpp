@@ -39,7 +39,7 @@ ActuatorMap read_map(const std::string& map, const TracedPerson& person, const s
 
 void use_maps(const std::vector<PersonValue>& maps, OpenTrace& trace, const std::string& name, Verbosity verbosity) {
   for (const PersonValue& map : maps) {
-    TracedPerson& person = trace.people[person_of(map, kMapFlag, trace, name)];
+    TracedPerson& person = trace.people[person_of(map, kMapFlag, trace.people.size(), name)];
     person.map = read_map(map.value, person, name, verbosity);
   }
 }

@@ -41,9 +41,7 @@ std::vector<PersonValue> parse_person_values(const PersonFlag& flag, const std::
   return values;
 }
 
-std::size_t person_of(const PersonValue& value, const PersonFlag& flag, const OpenTrace& trace,
-                      const std::string& name) {
-  const std::size_t people = trace.people.size();
+std::size_t person_of(const PersonValue& value, const PersonFlag& flag, std::size_t people, const std::string& name) {
   if (!value.person && people > 1)
     throw UsageError(flag.name, fmt::format("'{}': {} holds {}", value.value, name, count_of_people(people)),
                      fmt::format("say whose {} it is: {} 1={}", flag.noun, flag.name, flag.example));

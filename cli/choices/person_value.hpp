@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/choices/scene.hpp"
-
 namespace vestige::cli {
 
 /// A value of a flag that may say whose it is: VALUE, or K=VALUE for person K, who counts from 1.
@@ -30,10 +28,10 @@ PersonValue parse_person_value(const std::string& text);
 /// Reads all values of a flag. Throws `UsageError` for person 0, for an empty value, and if a person gets two.
 std::vector<PersonValue> parse_person_values(const PersonFlag& flag, const std::vector<std::string>& texts);
 
-/// Returns the person, counted from 0, whose value this is. Throws `UsageError` for a person who is not in the trace,
-/// and if a trace of several people leaves open who is meant. `name` is the trace's.
-std::size_t person_of(const PersonValue& value, const PersonFlag& flag, const OpenTrace& trace,
-                      const std::string& name);
+/// Returns the person, counted from 0, of a scene with so many `people`, whose value this is. Throws `UsageError` for a
+/// person who is not there, and if a scene of several people leaves open who is meant. `name` is that of the trace, or
+/// of the live sources.
+std::size_t person_of(const PersonValue& value, const PersonFlag& flag, std::size_t people, const std::string& name);
 
 /// Returns the path with the person's number in it: OUT.2.csv for the second. `person` counts from 0.
 std::string numbered_path(std::filesystem::path path, std::size_t person);

@@ -14,7 +14,7 @@
 #include "cli/choices/scene_choice.hpp"
 #include "cli/choices/snapshots.hpp"
 #include "cli/files/export_formats.hpp"
-#include "cli/files/limits_choice.hpp"
+#include "cli/choices/limits_choice.hpp"
 #include "cli/files/people_choice.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"

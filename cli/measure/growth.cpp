@@ -9,9 +9,9 @@
 #include "analysis/base/provenance.hpp"
 #include "analysis/frequency/growth_report.hpp"
 #include "analysis/frequency/sweep_report.hpp"
-#include "cli/choices/default_trace.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/measure/default_trace.hpp"
 #include "cli/measure/sweep_choice.hpp"
 #include "cli/verbs.hpp"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "cli/choices/default_trace.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/measure/default_trace.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
 

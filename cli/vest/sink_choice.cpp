@@ -142,6 +142,12 @@ void add_sink_settings(CLI::App& verb, SinkChoice& choice, const std::string& le
       ->check(CLI::IsMember({"float", "integer", "boolean"}));
 }
 
+void refuse_vmc(const SinkChoice& choice) {
+  if (choice.is_vmc())
+    throw UsageError("--port", fmt::format("'{}' takes poses and colliders, which is no vest", choice.port),
+                     "name the port of a vest; 'vestige stream' sends poses there");
+}
+
 /// Adds --port, for one or for several.
 /// `others` are further kinds of ports, `remark` follows all kinds.
 CLI::Option* add_port(CLI::App& verb, auto& value, const std::string& others, const std::string& remark) {
@@ -167,26 +173,29 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
   add_port(verb, choice.port, "", "")->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
   add_sink_settings(verb, choice, "");
   verb.parse_complete_callback([&verb, &choice] {
-    if (choice.is_vmc())
-      throw UsageError("--port", fmt::format("'{}' takes poses and colliders, which is no vest", choice.port),
-                       "name the port of a vest; 'vestige stream' sends poses there");
+    refuse_vmc(choice);
     check_sink_flags(verb, {choice});
   });
 }
 
 void add_sinks_options(CLI::App& verb, SinkChoice& settings, std::vector<std::string>& ports,
-                       const std::string& levels_remark) {
+                       const std::string& levels_remark, VmcPorts vmc_ports) {
+  const bool takes_vmc = vmc_ports == VmcPorts::kTaken;
   add_port(verb, ports,
-           "; vmc://HOST:PORT: poses and colliders in the place of frames, as VR programs send them to record --live",
+           takes_vmc ? "; vmc://HOST:PORT: poses and colliders in the place of frames, as VR programs send them to "
+                       "record --live"
+                     : "",
            "; of several people, that of person K; repeat for more people")
-      ->type_name("[K=]DEVICE|osc://HOST:PORT|vmc://HOST:PORT|file:OUT|-")
+      ->type_name(takes_vmc ? "[K=]DEVICE|osc://HOST:PORT|vmc://HOST:PORT|file:OUT|-"
+                            : "[K=]DEVICE|osc://HOST:PORT|file:OUT|-")
       ->expected(1)
       ->take_all();
   add_sink_settings(verb, settings, levels_remark);
-  verb.parse_complete_callback([&verb, &settings, &ports] {
+  verb.parse_complete_callback([&verb, &settings, &ports, takes_vmc] {
     std::vector<SinkChoice> sinks;
     sinks.reserve(ports.size());
     for (const std::string& port : ports) sinks.push_back(settings.at(parse_person_value(port).value));
+    if (!takes_vmc) std::ranges::for_each(sinks, refuse_vmc);
     check_sink_flags(verb, sinks);
   });
 }

@@ -55,10 +55,12 @@ struct SinkChoice {
 /// Adds --port, --baud, --ttl, --levels, --xbee-api, --xbee-request, --xbee-address, --xbee-escaped, --osc-address and
 /// --osc-value.
 void add_sink_options(CLI::App& verb, SinkChoice& choice);
+/// Whether ports may also be of programs that take poses and colliders.
+enum class VmcPorts : std::uint8_t { kTaken, kRefused };
 /// The same for several sinks, which differ in their port: --port may say whose it is. `levels_remark` follows the help
 /// of --levels.
 void add_sinks_options(CLI::App& verb, SinkChoice& settings, std::vector<std::string>& ports,
-                       const std::string& levels_remark);
+                       const std::string& levels_remark, VmcPorts vmc_ports);
 
 /// The actuators that a frame addresses, if a board reports how many it has.
 enum class Driven { kThoseNamed, kAllOfTheBoard };

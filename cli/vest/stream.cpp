@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <memory>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "analysis/mapping/layouts.hpp"
 #include "analysis/run/playback.hpp"
 #include "cli/choices/law_choice.hpp"
 #include "cli/choices/person_maps.hpp"
@@ -16,8 +14,9 @@
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "cli/vest/sink_choice.hpp"
-#include "cli/vest/stream_options.hpp"
 #include "cli/vest/stream_report.hpp"
+#include "cli/vest/vest_options.hpp"
+#include "cli/vest/vests.hpp"
 #include "cli/vest/vmc_stream.hpp"
 #include "cli/vest/wearer.hpp"
 #include "detector/detectors/path_choice.hpp"
@@ -26,73 +25,6 @@
 namespace vestige::cli {
 
 namespace {
-
-/// Returns whether a map is a file that may change during the playback.
-bool is_watched(const std::string& map) {
-  return map != "builtin" && !is_layout(map);
-}
-
-void check_flags(const StreamOptions& options, const std::vector<PersonValue>& maps) {
-  options.law.check();
-  if (options.sink.quantity() == Quantity::kPressure && options.law.any())
-    throw UsageError(options.law.actuator.empty() ? "--law" : "--actuator",
-                     "pressures have their own law, which uses the speed of contacts", "leave it out");
-  if (!maps.empty() && options.choice.surface == "mapped")
-    throw UsageError("--map", "may change during the playback, which --surface mapped cannot follow",
-                     "leave one of the two out");
-  for (const PersonValue& map : maps) {
-    if (map.value == "none")
-      throw UsageError("--map", "'none' has no actuator to switch",
-                       "name a map, or leave the flag out to use the trace's map");
-    if (is_watched(map.value) && options.choice.detector == "paper")
-      throw UsageError("--map", "may change during the playback, which --detector paper cannot follow",
-                       "choose another detector");
-  }
-}
-
-/// Reads the ports. Throws `UsageError` if two people would get the same one.
-std::vector<PersonValue> parse_ports(const StreamOptions& options) {
-  std::vector<PersonValue> ports = parse_person_values(kPortFlag, options.ports);
-  std::set<std::string> taken;
-  for (const PersonValue& port : ports)
-    if (!taken.insert(port.value).second)
-      throw UsageError(
-          "--port",
-          fmt::format("'{}' would be the {} of two people", port.value, options.plays_people() ? "port" : "vest"),
-          "give each person a port of their own");
-  return ports;
-}
-
-/// Returns the vests, by person. `stamps` are those of the files of --map.
-std::vector<WornVest> vests_of(const StreamOptions& options, const std::vector<PersonValue>& ports,
-                               const std::vector<PersonValue>& maps, const std::vector<std::string>& stamps,
-                               const OpenTrace& trace) {
-  std::vector<WornVest> vests;
-  vests.reserve(ports.size());
-  for (const PersonValue& port : ports) {
-    WornVest& vest = vests.emplace_back();
-    vest.person = person_of(port, kPortFlag, trace, options.trace);
-    vest.port = port.value;
-  }
-  std::ranges::sort(vests, {}, &WornVest::person);
-  for (std::size_t i = 0; i < maps.size(); ++i) {
-    const auto vest = std::ranges::find(vests, maps[i].person.value_or(0), &WornVest::person);
-    if (vest == vests.end())
-      throw UsageError("--map",
-                       fmt::format("person {} has no --port, so nobody feels the map '{}'",
-                                   maps[i].person.value_or(0) + 1, maps[i].value),
-                       "leave it out, or give that person a port");
-    vest->map = maps[i].value;
-    vest->map_stamp = stamps[i];
-  }
-  if (options.log.empty()) return vests;
-  if (vests.size() > 1 && is_pipe(options.log))
-    throw UsageError("--log", fmt::format("each of {} vests has a log, and '{}' takes one", vests.size(), options.log),
-                     "name a file: OUT.csv is the first vest's; that of any other person K is OUT.K.csv");
-  for (WornVest& vest : vests)
-    vest.log = &vest == &vests.front() ? options.log : numbered_path(options.log, vest.person);
-  return vests;
-}
 
 /// Returns the name of the detector for all vests: what suits the finest avatar.
 std::string detector_name(const StreamOptions& options, const std::vector<WornVest>& vests, OpenTrace& trace) {
@@ -103,24 +35,17 @@ std::string detector_name(const StreamOptions& options, const std::vector<WornVe
 }
 
 /// Plays the trace to those who wear vests.
-PlaybackResult play_to(const std::vector<std::unique_ptr<Wearer>>& wearers, OpenTrace& trace,
-                       const std::string& detector, const StreamOptions& options) {
+PlaybackResult play_to(const Wearers& wearers, OpenTrace& trace, const std::string& detector,
+                       const StreamOptions& options) {
   const Verbosity verbosity = options.common.verbosity();
   const auto tell = [verbosity](const std::string& text) { warn(text, verbosity); };
   for (const auto& wearer : wearers) wearer->open(tell);
   for (const auto& wearer : wearers) wearer->start(tell);
-  std::vector<DetectedPerson> people;
-  people.reserve(wearers.size());
-  for (const auto& wearer : wearers) people.push_back({wearer->number(), wearer->person().avatar, wearer->detector()});
+  const std::vector<DetectedPerson> people = detected_people(wearers);
 
   Progress progress("Streaming", verbosity);
   PlaybackCalls calls;
-  calls.make_laws = [&] {
-    std::vector<PlaybackCalls::Law> laws;
-    laws.reserve(wearers.size());
-    for (const auto& wearer : wearers) laws.push_back(wearer->make_law());
-    return laws;
-  };
+  calls.make_laws = [&] { return make_laws(wearers); };
   calls.go_on = [&](double share) {
     for (const auto& wearer : wearers) wearer->still_here(tell);
     return progress.update(share);
@@ -135,8 +60,7 @@ PlaybackResult play_to(const std::vector<std::unique_ptr<Wearer>>& wearers, Open
     wearers[i]->take(frame, due);
   };
   PlaybackResult result = play(trace.reader, people, options.playback, calls);
-  for (const auto& wearer : wearers) wearer->stop();  // all at once: nobody waits for the answers of another's vest
-  for (const auto& wearer : wearers) wearer->finish();
+  finish(wearers);
   return result;
 }
 
@@ -150,14 +74,12 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   std::vector<std::string> inputs = {options.trace, options.law.actuator};
   for (const PersonValue& map : maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
   check_outputs(outputs, inputs, options.common);
-  check_flags(options, maps);
-  std::vector<std::string> stamps;
-  stamps.reserve(maps.size());
-  for (const PersonValue& map : maps) stamps.push_back(is_watched(map.value) ? ActuatorMapWatch::stamp(map.value) : "");
+  check_vest_flags(options, maps);
+  const std::vector<std::string> stamps = stamps_of(maps);
 
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
   use_maps(maps, trace, options.trace, verbosity);
-  const std::vector<WornVest> vests = vests_of(options, ports, maps, stamps, trace);
+  const std::vector<WornVest> vests = vests_of(options, ports, maps, stamps, trace.people.size());
   for (auto vest = vests.begin() + 1; vest != vests.end(); ++vest) outputs.push_back(vest->log);
   check_outputs(outputs, inputs, options.common);  // again, with the logs of the other people
   require_frames(trace.reader, options.trace);
@@ -165,10 +87,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   warn_of_radii({name}, trace.reader, options.trace, verbosity);
   require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
   SharedContext context(options.choice.context, options.choice.device);
-  std::vector<std::unique_ptr<Wearer>> wearers;
-  wearers.reserve(vests.size());
-  for (const WornVest& vest : vests)
-    wearers.push_back(std::make_unique<Wearer>(options, vest, trace.people[vest.person], name, context));
+  const Wearers wearers = make_wearers(options, vests, trace.people, name, context);
 
   catch_interrupts();
   Streamed streamed = {options, trace, wearers};
@@ -194,7 +113,7 @@ void add_stream(CLI::App& program, Invocation& invocation) {
                             "  vestige stream man.mcap --port vmc://127.0.0.1:39539 --rate 2\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   add_sinks_options(*verb, options->sink, options->ports,
-                    ", by the speed at which a collider pushes into the skin, as a share of 1 m/s");
+                    ", by the speed at which a collider pushes into the skin, as a share of 1 m/s", VmcPorts::kTaken);
   const auto add_playing = [&](const char* name, auto& value, const char* description) {
     return verb->add_option(name, value, description)->group("Playing");
   };
@@ -220,7 +139,11 @@ void add_stream(CLI::App& program, Invocation& invocation) {
       ->group("Results")
       ->type_name("OUT.csv|-");
   add_common_options(*verb, options->common);
-  verb->callback([options, &invocation] { run_stream(*options, invocation); });
+  verb->callback([options, &invocation] {
+    options->scene = options->trace;
+    options->law_rate = options->playback.rate;
+    run_stream(*options, invocation);
+  });
 }
 
 }  // namespace vestige::cli

@@ -6,59 +6,17 @@
 #include <cstdint>
 
 #include "analysis/base/provenance.hpp"
+#include "cli/vest/wearer_report.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 
-nlohmann::ordered_json to_json(const LatencyHistogram& latency) {
-  return {{"p50", latency.quantile_us(0.5)},
-          {"p95", latency.quantile_us(0.95)},
-          {"p99", latency.quantile_us(0.99)},
-          {"max", latency.max_us()}};
-}
-
-std::string describe(const LatencyHistogram& latency) {
-  return fmt::format("p50 {:.2f}, p95 {:.2f}, p99 {:.2f}, max {:.2f} ms", latency.quantile_us(0.5) / 1e3,
-                     latency.quantile_us(0.95) / 1e3, latency.quantile_us(0.99) / 1e3, latency.max_us() / 1e3);
-}
-
 namespace {
-
-/// What was sent to all vests together.
-SenderStatistics total_of(const std::vector<std::unique_ptr<Wearer>>& wearers) {
-  SenderStatistics total = wearers.front()->sent();
-  for (auto wearer = wearers.begin() + 1; wearer != wearers.end(); ++wearer) total += (*wearer)->sent();
-  return total;
-}
 
 std::uint64_t contacts_of(const PlaybackResult& playback) {
   std::uint64_t contacts = 0;
-  for (const PlaybackResult::Person& person : playback.people) contacts += person.contacts;
+  for (const FeltPerson& person : playback.people) contacts += person.contacts;
   return contacts;
-}
-
-void add_to(nlohmann::ordered_json& json, const SenderStatistics& sender, std::uint64_t maps_reloaded) {
-  json["sent"] = sender.sent;
-  json["changes"] = sender.changes;
-  json["superseded"] = sender.superseded;
-  json["acknowledged"] = sender.acknowledged;
-  json["off_sent"] = sender.off_sent;
-  json["off_acknowledged"] = sender.off_acknowledged;
-  json["zeros_acknowledged"] = sender.zeros_acknowledged;
-  json["most_unanswered"] = sender.most_unanswered;
-  json["fail_safes"] = sender.fail_safes;
-  json["output_failures"] = sender.output_failures;
-  json["overruns"] = sender.overruns;
-  json["receive_errors"] = sender.receive_errors;
-  json["links_lost"] = sender.links_lost;
-  json["maps_reloaded"] = maps_reloaded;
-  json["latency_us"] = {{"written", to_json(sender.written)}, {"acknowledged", to_json(sender.acknowledged_after)}};
-}
-
-nlohmann::ordered_json link_of(const Wearer& wearer) {
-  nlohmann::ordered_json link = wearer.sink().link_json();
-  link["bytes"] = wearer.sent().bytes;
-  return link;
 }
 
 /// Each person of the trace. Who wears no vest has no link.
@@ -76,57 +34,6 @@ nlohmann::ordered_json avatars_of(const Streamed& streamed) {
     json["link"] = link_of(wearer);
   }
   return avatars;
-}
-
-/// Returns what is known of the frames that switch everything off at the end.
-const char* off_at_end(const SenderStatistics& sender, const ActuatorSink& sink) {
-  if (doubt_about_off(sender, sink).empty()) return sink.acknowledges() ? "acknowledged" : "sent";
-  return sender.zeros_acknowledged ? "all levels 0 acknowledged, OFF not" : "NOT CONFIRMED";
-}
-
-std::string summary_of(const Wearer& wearer) {
-  const SenderStatistics& sender = wearer.sent();
-  const OpenSink& sink = wearer.sink();
-  std::string text = fmt::format("sent {} frames, {} of them changes; {} changes superseded by newer ones", sender.sent,
-                                 sender.changes, sender.superseded);
-  text += sink.sink().acknowledges() ? fmt::format("; {} acknowledged\n", sender.acknowledged) : "\n";
-  if (sender.written.count() != 0) text += fmt::format("contact to last byte written: {}\n", describe(sender.written));
-  if (sender.acknowledged_after.count() != 0)
-    text += fmt::format("contact to acknowledgement:   {}\n", describe(sender.acknowledged_after));
-  text += fmt::format("all actuators off at the end: {}\n", off_at_end(sender, sink.sink()));
-  return text + sink.describe_link(sender.bytes);
-}
-
-/// What went wrong on the way to one vest.
-int report_losses(const Wearer& wearer, const PlaybackResult::Person& person, Verbosity verbosity) {
-  const SenderStatistics& sender = wearer.sent();
-  const OpenSink& sink = wearer.sink();
-  const std::string name = sink.sink().name();
-  int code = sender.links_lost == 0 ? kDone : kDataLost;
-  const auto say = [&](const std::string& text) {
-    warn(name + ": " + text, verbosity);
-    code = kDataLost;
-  };
-  if (person.non_finite_frames + person.non_finite_segments != 0)
-    say(fmt::format("{} poses and the ends of {} segments are not finite; they fired nothing", person.non_finite_frames,
-                    person.non_finite_segments));
-  if (sender.receive_errors + sender.overruns != 0)
-    say(fmt::format("the board counted {} damaged frames and lost bytes {} times; check the wires and the baud",
-                    sender.receive_errors, sender.overruns));
-  if (sender.output_failures != 0)
-    say(
-        fmt::format("the board's output chips did not answer it, by {}; all actuators were off meanwhile; check the "
-                    "wires SDA and SCL, the chips' addresses and their supply",
-                    counted(sender.output_failures, "answer")));
-  if (sender.fail_safes != 0)
-    say(fmt::format("the board switched itself off or restarted {} times", sender.fail_safes));
-  if (const std::string radio = sink.radio_failure(); !radio.empty()) say(radio);
-  const bool acknowledges = sink.sink().acknowledges();
-  if (acknowledges && sender.acknowledged != sender.sent)
-    say(fmt::format("{} of {} frames were not acknowledged{}", sender.sent - sender.acknowledged, sender.sent,
-                    sink.greeting() && sender.acknowledged <= 2 ? "; check that the board takes these --levels" : ""));
-  if (const std::string doubt = doubt_about_off(sender, sink.sink()); !doubt.empty()) say(doubt);
-  return code;
 }
 
 }  // namespace
@@ -171,7 +78,7 @@ std::string summary(const Streamed& streamed) {
     const Wearer& wearer = *streamed.wearers[i];
     if (streamed.trace.people.size() > 1)
       text += fmt::format("{}: {}\n", wearer.person().name, counted(playback.people[i].contacts, "contact"));
-    text += summary_of(wearer);
+    text += summary_of(wearer, "contact");
   }
   return text;
 }

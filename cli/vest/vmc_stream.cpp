@@ -13,7 +13,7 @@
 #include "analysis/run/frame_pace.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/vest/sink_choice.hpp"
-#include "cli/vest/stream_report.hpp"
+#include "cli/vest/wearer_report.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/host_port.hpp"
 #include "traces/base/number_text.hpp"
@@ -35,7 +35,7 @@ using Players = std::vector<Player>;
 Players players_of(const std::vector<PersonValue>& ports, const StreamOptions& options, const OpenTrace& trace) {
   Players players;
   for (const PersonValue& port : ports)
-    players.push_back({person_of(port, kPortFlag, trace, options.trace),
+    players.push_back({person_of(port, kPortFlag, trace.people.size(), options.trace),
                        parse_host_port(port.value, SinkChoice::kVmcScheme, kPortFlag.name)});
   std::ranges::sort(players, {}, &Player::person);
   return players;

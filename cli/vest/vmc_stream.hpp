@@ -4,7 +4,7 @@
 
 #include "cli/choices/person_value.hpp"
 #include "cli/options.hpp"
-#include "cli/vest/stream_options.hpp"
+#include "cli/vest/vest_options.hpp"
 
 namespace vestige::cli {
 

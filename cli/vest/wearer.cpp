@@ -10,26 +10,26 @@ namespace vestige::cli {
 namespace {
 
 /// Returns laws for pressures if the sink asks for them, else those of --law.
-LawMaker make_laws(const StreamOptions& options, const WornVest& vest, const TracedPerson& person) {
+LawMaker law_maker_of(const VestOptions& options, const WornVest& vest, const TracedPerson& person) {
   if (person.map.actuator_count == 0)
-    throw Error(vest.map.empty() ? options.trace : vest.map,
+    throw Error(vest.map.empty() ? options.scene : vest.map,
                 person.name.empty() ? "has no actuator, so nothing would be felt"
                                     : person.name + " has no actuator, so nothing would be felt",
                 person.name.empty() ? "name a map that has actuators: --map FILE.png"
                                     : fmt::format("name a map that has actuators: --map {}=FILE.png", vest.person + 1));
-  const double rate = options.playback.rate;
+  const double rate = options.law_rate;
   if (options.sink.quantity() == Quantity::kPressure) return {person.map, options.law.options(rate).hold_s};
   return LawMaker(DriveMaker(options.law, person.avatar, person.map, rate));
 }
 
 }  // namespace
 
-Wearer::Wearer(const StreamOptions& options, const WornVest& vest, TracedPerson& person, const std::string& detector,
+Wearer::Wearer(const VestOptions& options, const WornVest& vest, TracedPerson& person, const std::string& detector,
                SharedContext& context)
     : options_(options),
       vest_(vest),
       person_(person),
-      laws_(make_laws(options, vest, person)),
+      laws_(law_maker_of(options, vest, person)),
       detector_(make_detector(detector, context, options.choice, person.avatar, person.map, laws_.planes())) {}
 
 void Wearer::open(const std::function<void(const std::string&)>& tell) {
@@ -52,7 +52,7 @@ void Wearer::still_here(const std::function<void(const std::string&)>& tell) {
     person_.map = std::move(taken->map);
     laws_.use(person_.map, taken->layout);
     ++maps_reloaded_;
-    for (const std::string& warning : map_warnings(person_.map, person_, {options_.trace, vest_.map})) tell(warning);
+    for (const std::string& warning : map_warnings(person_.map, person_, {options_.scene, vest_.map})) tell(warning);
   }
   sender_->still_here();
 }

@@ -11,29 +11,29 @@
 #include "cli/choices/scene.hpp"
 #include "cli/vest/sink_choice.hpp"
 #include "cli/vest/stream_log.hpp"
-#include "cli/vest/stream_options.hpp"
+#include "cli/vest/vest_options.hpp"
 #include "detector/actuators/actuator_map_watch.hpp"
 #include "detector/actuators/law_maker.hpp"
 #include "transport/sender.hpp"
 
 namespace vestige::cli {
 
-/// A vest that a person of a trace wears: what the flags say of it.
+/// A vest that a person of a scene wears: what the flags say of it.
 struct WornVest {
   std::size_t person = 0;  ///< from 0 on
   std::string port;
-  std::string map;        ///< of --map; empty: the trace's
+  std::string map;        ///< of --map; empty: the person's own
   std::string map_stamp;  ///< of the map's files before they were read; empty if they are not watched
   std::string log;        ///< empty: none is written
 };
 
-/// A person who feels a trace while it plays: turns the contacts of that person into frames, and sends them to the
+/// A person who feels a scene while it goes on: turns the contacts of that person into frames, and sends them to the
 /// vest.
 class Wearer {
  public:
   /// Measures the layout if the law needs one, and makes the detector. Keeps references to all but `context`. Throws
   /// `Error` if the person has no actuator.
-  Wearer(const StreamOptions& options, const WornVest& vest, TracedPerson& person, const std::string& detector,
+  Wearer(const VestOptions& options, const WornVest& vest, TracedPerson& person, const std::string& detector,
          SharedContext& context);
 
   const TracedPerson& person() const { return person_; }
@@ -61,7 +61,7 @@ class Wearer {
   std::uint64_t maps_reloaded() const { return maps_reloaded_; }
 
  private:
-  const StreamOptions& options_;
+  const VestOptions& options_;
   const WornVest& vest_;
   TracedPerson& person_;
   LawMaker laws_;

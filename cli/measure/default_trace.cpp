@@ -1,4 +1,4 @@
-#include "cli/choices/default_trace.hpp"
+#include "cli/measure/default_trace.hpp"
 
 #include <memory>
 

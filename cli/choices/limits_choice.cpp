@@ -1,4 +1,4 @@
-#include "cli/files/limits_choice.hpp"
+#include "cli/choices/limits_choice.hpp"
 
 #include <fmt/format.h>
 
