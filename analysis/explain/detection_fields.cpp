@@ -167,6 +167,18 @@ constexpr Field kStream[] = {
     {"duration_s", "s", "length of the playback"},
     {"missed_deadlines", "", "frames that were ready only after they were due"},
     {"most_late_s", "s", "largest delay of a frame"},
+    {"avatars/name", "", "the people of the trace, in its order; empty: one whom the trace does not name"},
+    {"avatars/link", "", "null: this person had no --port"},
+    {"avatars/*", "",
+     "as beside avatars, of this person; there, all people are counted together, and law and link are the first one's"},
+    {"unsent", "", "frames that were not sent, since there was no route to the host; only over VMC"},
+    {"poses_left_out", "", "poses that no message can say: not finite, or beyond 1e9 m; only over VMC"},
+    {"colliders_left_out", "", "colliders that no message can say in some frame; only over VMC"},
+    {"deviation_m", "m", "most that the skin as sent lies from the trace's, an upper bound; only over VMC"},
+};
+
+/// What `stream` and `live` say of what was sent.
+constexpr Field kSent[] = {
     {"sent", "", "frames passed to the system: changes, refreshes, and those that switch off"},
     {"changes", "", "states that differ from the one before"},
     {"superseded", "", "changes that a newer one replaced before the line was free"},
@@ -174,25 +186,62 @@ constexpr Field kStream[] = {
     {"off_sent", "", "true: the frame that switches everything off was sent at the end"},
     {"off_acknowledged", "", "true: the board acknowledged it"},
     {"zeros_acknowledged", "", "true: the board acknowledged levels of 0 before it"},
-    {"avatars/name", "", "the people of the trace, in its order; empty: one whom the trace does not name"},
-    {"avatars/link", "", "null: this person had no --port"},
-    {"avatars/*", "",
-     "as beside avatars, of this person; there, all people are counted together, and law and link are the first one's"},
     {"most_unanswered", "", "most frames under way at once; 0: the port gives no answers"},
     {"fail_safes", "", "answers that say that the board had switched itself off"},
     {"output_failures", "", "answers that say that the chips which drive the motors did not answer the board"},
     {"overruns", "", "answers that say that the board had lost bytes"},
     {"receive_errors", "", "damaged frames, as the board counts them"},
     {"links_lost", "", "how often the link was lost"},
-    {"unsent", "", "frames that were not sent, since there was no route to the host; only over VMC"},
-    {"poses_left_out", "", "poses that no message can say: not finite, or beyond 1e9 m; only over VMC"},
-    {"colliders_left_out", "", "colliders that no message can say in some frame; only over VMC"},
-    {"deviation_m", "m", "most that the skin as sent lies from the trace's, an upper bound; only over VMC"},
     {"maps_reloaded", "", "how often a changed map was read again"},
     {"floor_us", "us", "least time that the sender leaves between two frames; of several vests, the first one's"},
     {"latency_us/written/*", "us",
      "from a change, over VMC from a frame's due time, until its last byte was written: median, 95 %, 99 %, most"},
     {"latency_us/acknowledged/*", "us", "from a change until its answer: median, 95 %, 99 %, most; 0: no answers"},
+};
+
+constexpr Field kLive[] = {
+    {"frames_superseded", "", "whole frames that a newer one replaced before they were detected; 0 with --rate"},
+    {"complete", "", "false: some input was left out, or the link was lost"},
+    {"from", "", "--from, as given"},
+    {"pose", "", "--pose, as given"},
+    {"method", "", "static, carried or ccd: how the body's own motion counts (CONTRACT)"},
+    {"colliders", "", "ids of colliders that came"},
+    {"contacts_hash", "",
+     "SHA-256 of all contacts' frame, collider, triangle, t and actuator; a replay of the recording has the same if "
+     "detector, --method, map and --surface give the same contacts; of several vests SHA-256 of theirs"},
+    {"duration_s", "s", "from the first frame to the end"},
+    {"missed_deadlines", "", "frames that were not made within 20 ms of their time; only with --rate"},
+    {"silences", "", "how often no whole frame came for --ttl, so that all actuators were switched off"},
+    {"lost/malformed", "", "datagrams or lines that could not be read, or have numbers that are not finite"},
+    {"lost/overflowed", "", "datagrams that the system discarded, as they came too fast"},
+    {"lost/strangers", "", "datagrams of a second sender to a port"},
+    {"lost/ids_clash", "", "true: colliders of one id came to several ports, and only one port's count"},
+    {"latency/arrival_to_decoded/*", "ms", "from the system's time stamp of what completed a frame until it was read"},
+    {"latency/arrival_to_detected/*", "ms", "until its contacts were found"},
+    {"latency/arrival_to_written/*", "ms",
+     "of changes, until the last byte was written; the line's own time (link/line_time_us) comes after that"},
+    {"latency/arrival_to_acknowledged/*", "ms", "of changes, until the board's answer; no counts: no answers"},
+    {"latency/pose_delay/*", "ms",
+     "how late poses were shown, by --pose interpolate; a motion of the body waits for this besides"},
+    {"latency/frame_interval/*", "ms",
+     "between two frames. Of each: p50_ms, p95_ms, p99_ms, max_ms; and a histogram: counts[i] took up to up_to_ms[i] "
+     "and longer than the class before, which is 1 % less"},
+    {"real_time", "", "null: without --realtime"},
+    {"real_time/priority", "", "priority by SCHED_FIFO; null: refused"},
+    {"real_time/memory_locked", "", "true: no page leaves memory"},
+    {"real_time/core", "", "core that the session is bound to; null: refused"},
+    {"real_time/refused", "", "what the system refused, and what to grant"},
+    {"recording", "", "null: without --record"},
+    {"recording/files", "", "the files that were written"},
+    {"recording/frames", "", "frames in them"},
+    {"recording/bytes", "bytes", "their size"},
+    {"recording/left_out", "", "frames that were felt and not recorded, since the disk did not keep up"},
+    {"recording/complete", "", "true: all that was felt is recorded, within the limits of --ring"},
+    {"avatars/name", "", "the people, in their order; empty: there is one"},
+    {"avatars/link", "", "null: this person had no --port"},
+    {"avatars/contacts_hash", "", "contacts_hash of this person"},
+    {"avatars/*", "",
+     "as beside avatars, of this person; there, all people are counted together, and law and link are the first one's"},
 };
 
 constexpr Field kLink[] = {
@@ -254,7 +303,13 @@ FieldGroups replay_fields() {
 }
 
 FieldGroups stream_fields() {
-  return {{"", kRun}, {"", kStream}, {"law", kLaw}, {"link", kLink}, {"gl", gl_fields()}, {"", origin_fields()}};
+  return {{"", kRun},      {"", kStream},       {"", kSent},          {"law", kLaw},
+          {"link", kLink}, {"gl", gl_fields()}, {"", origin_fields()}};
+}
+
+FieldGroups live_fields() {
+  return {{"", kLive},     {"", kRun},          {"", kSent},          {"law", kLaw},
+          {"link", kLink}, {"gl", gl_fields()}, {"", origin_fields()}};
 }
 
 FieldGroups vest_check_fields() {

@@ -25,6 +25,7 @@ FieldGroups tact_fields();
 FieldGroups stream_log_fields();
 FieldGroups replay_fields();
 FieldGroups stream_fields();
+FieldGroups live_fields();
 FieldGroups vest_check_fields();
 
 // Frequency.

@@ -31,8 +31,9 @@ std::vector<FileKind> detection_kinds() {
        tact_fields()},
       {"replay.json", kJson, "A replay", "vestige replay --json OUT.json", replay_fields()},
       {"stream.json", kJson, "A stream to the vest", "vestige stream --json OUT.json", stream_fields()},
-      {"stream.csv", kCsv, "What became of each changed state of a stream", "vestige stream --log OUT.csv",
-       stream_log_fields()},
+      {"stream.csv", kCsv, "What became of each changed state of a stream or a live session",
+       "vestige stream --log OUT.csv, vestige live --log OUT.csv", stream_log_fields()},
+      {"live.json", kJson, "A live session", "vestige live --json OUT.json", live_fields()},
       {"vest_check.json", kJson, "A check of the vest", "vestige vest check --json OUT.json", vest_check_fields()}};
 }
 

@@ -144,6 +144,10 @@ int draw_skipping(const Options& options) {
                       [&] { return skipping_figure(read_skipping(options.inputs)); });
 }
 
+int draw_latency(const Options& options) {
+  return write_figure(options, stem_of(options), [&] { return latency_figure(read_latency(options.inputs.front())); });
+}
+
 int draw_growth(const Options& options) {
   return draw_results(options, "growth",
                       [](const std::filesystem::path& folder) { return growth_figure(read_growth(folder)); });

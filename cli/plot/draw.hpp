@@ -10,6 +10,7 @@ int draw_accuracy(const Options& options);
 int draw_sweep(const Options& options);
 int draw_stages(const Options& options);
 int draw_skipping(const Options& options);
+int draw_latency(const Options& options);
 int draw_growth(const Options& options);
 int draw_stress(const Options& options);
 int draw_timeline(const Options& options);

@@ -103,6 +103,16 @@ CLI::App& add_skipping(CLI::App& app, Options& options) {
   return skipping;
 }
 
+CLI::App& add_latency(CLI::App& app, Options& options) {
+  CLI::App& latency =
+      add_command(app, "latency", "How long a live session took, from the arrival of input to the motor",
+                  "  vestige plot latency live.json\n"
+                  "  vestige plot latency live.json -o figures/latency\n");
+  add_input(latency, options, "JSON", "The file that 'vestige live --json FILE' wrote");
+  add_common_options(latency, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
+  return latency;
+}
+
 CLI::App& add_timeline(CLI::App& app, Options& options) {
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
@@ -271,6 +281,7 @@ std::vector<Verb> add_verbs(CLI::App& app, Options& options) {
   return {{&add_sweep(app, options), draw_sweep},
           {&add_stages(app, options), draw_stages},
           {&add_skipping(app, options), draw_skipping},
+          {&add_latency(app, options), draw_latency},
           {&add_results(app, options, "accuracy", "Contacts missed over run time (accuracy.svg, .png)",
                         "Folder for the figure [default: the input]"),
            draw_accuracy},

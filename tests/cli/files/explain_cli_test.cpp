@@ -77,7 +77,9 @@ TEST_F(Explain, KnowsEveryNameThatReplaysAndExportsWrite) {
   must_run("vestige export small.mcap -o small.h5 --contacts b.h5 -q");
   must_run("vestige export small.mcap -o small.ndjson -q");
   must_run("vestige import folder -o back.mcap --json import.json -q");
-  expect_all_explained(19);
+  must_run(
+      "vestige live --from - --port osc://127.0.0.1:9 --record felt.mcap --realtime --json live.json -q <small.ndjson");
+  expect_all_explained(20);
 }
 
 TEST_F(Explain, KnowsEveryNameThatVerbsOnTracesWrite) {

@@ -89,6 +89,8 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
           "--stages --no-figure -o results/sweep -q && cp -r results/sweep before && cp -r results/sweep after && cp "
           "results/sweep/sweep.json gpu && cp results/sweep/sweep.json software "
           "&& vestige claims results -o results/README.md && vestige export man.mcap -o man_csv && "
+          "vestige export man.mcap -o man.ndjson && "
+          "vestige live --from - --port file:felt --json live.json -q <man.ndjson && "
           "printf 'HIERARCHY\nROOT hips\n{\nOFFSET 0 95 0\nCHANNELS 1 Yrotation\n"
           "JOINT leftUpperLeg\n{\nOFFSET 10 0 0\nCHANNELS 0\nJOINT leftFoot\n{\nOFFSET 0 -90 0\nCHANNELS 0\n}\n}\n}\n"
           "MOTION\nFrames: 2\nFrame Time: 0.1\n0\n10\n' >walk.bvh && mkdir given && mv [!g]* gpu given")
