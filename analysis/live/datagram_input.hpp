@@ -51,9 +51,6 @@ class DatagramInput final : public LiveInput {
   std::vector<std::string> take_problems() override;
   LiveLosses losses() const override;
 
-  /// What a person's sender moved.
-  const VmcState& state(std::size_t person) const { return sources_[person].state.vmc(); }
-
  private:
   struct Source {
     Source(const LivePort& port, LiveState::Senders senders);

@@ -48,12 +48,12 @@ class LiveRun {
     while (calls_.go_on() && !input_.has_ended() && !is_over()) {
       wait();
       input_.receive();
-      for (const std::string& problem : input_.take_problems()) calls_.tell(problem);
       if (const auto due = next_frame()) {
         take(*due);
       } else {
         look_for_silence();
       }
+      for (const std::string& problem : input_.take_problems()) calls_.tell(problem);
     }
     return finish();
   }
@@ -99,6 +99,7 @@ class LiveRun {
 
   void take(Clock::time_point time) {
     const bool is_new = has_new();
+    const bool was_silent = is_silent_;
     const bool begins = begin(time);
     input_.show(time, live_);
     frames_seen_ = input_.frames();
@@ -116,6 +117,7 @@ class LiveRun {
     detect(frame, since);
     tell_moments(since, begins);
     if (calls_.record) calls_.record(frame, take_notes());
+    if (was_silent) calls_.tell("input comes again");
   }
 
   /// Begins, or goes on after silence. Returns whether one of them is so.
@@ -125,10 +127,7 @@ class LiveRun {
       return false;
     }
     if (!has_begun_) start_ = time;
-    if (is_silent_) {
-      felt_.forget_contacts();  // whose time may be a little later than this frame's
-      calls_.tell("input comes again");
-    }
+    if (is_silent_) felt_.forget_contacts();  // whose time may be a little later than this frame's
     has_begun_ = true;
     is_silent_ = false;
     if (options_.rate_hz)
@@ -168,15 +167,13 @@ class LiveRun {
   void look_for_silence() {
     const Clock::time_point now = Clock::now();
     if (!has_begun_ || now < input_.arrived() + options_.ttl) return;
-    if (!std::exchange(is_silent_, true)) {
-      ++result_.silences;
-      felt_.forget_contacts();
-      felt_.gap(seconds(now - start_), now);
-      calls_.tell(
-          fmt::format("no whole frame came for {} ms: all actuators are off until one comes", options_.ttl.count()));
-      return;
-    }
+    const bool was_silent = std::exchange(is_silent_, true);
+    if (!was_silent) felt_.forget_contacts();
     felt_.gap(seconds(now - start_), now);
+    if (was_silent) return;
+    ++result_.silences;
+    calls_.tell(
+        fmt::format("no whole frame came for {} ms: all actuators are off until one comes", options_.ttl.count()));
   }
 
   LiveResult finish() {

@@ -48,7 +48,7 @@ TEST_F(PlotLatency, SaysWhatAFileLacks) {
   write_session("[2]");
   EXPECT_THAT(run("latency live.json").standard_error, HasSubstr("has not as many numbers as up_to_ms"));
   write_session("[2, 5]");
-  EXPECT_THAT(run("latency live.json").standard_error, HasSubstr("latency/arrival_to_detected/counts"));
+  EXPECT_THAT(run("latency live.json").standard_error, HasSubstr("latency.arrival_to_detected.counts[1] is 5"));
   write_text(folder_ / "live.json", R"({"commit": "01"})");
   const Outcome other = run("latency live.json");
   EXPECT_EQ(other.exit_code, 1);
