@@ -35,11 +35,10 @@ void LiveRecorder::attempt(const Work& work) {
 }
 
 void LiveRecorder::take(const TraceFrame& frame, std::vector<RecordingNote> notes) {
+  if (is_full_) return;
   attempt([&] {
-    if (thread_->is_full()) {
-      is_full_ = true;
-      thread_->stop();
-      finish_file();
+    is_full_ = thread_->is_full();
+    if (is_full_) {
       tell_(fmt::format("{}: the recording has ended, by --max-size; what is felt goes on", path_.string()));
       return;
     }
@@ -77,13 +76,9 @@ void LiveRecorder::finish() {
   attempt([&] {
     thread_->stop();
     is_full_ = recorder_->is_full();
-    finish_file();
+    recorder_->finish();
+    thread_.reset();
   });
-}
-
-void LiveRecorder::finish_file() {
-  thread_.reset();
-  recorder_->finish();
 }
 
 nlohmann::ordered_json LiveRecorder::to_json() const {

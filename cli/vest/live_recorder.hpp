@@ -38,7 +38,6 @@ class LiveRecorder {
   template <typename Work>
   void attempt(const Work& work);
   void add(RecordingNote note);
-  void finish_file();
 
   std::filesystem::path path_;
   std::function<void(const std::string&)> tell_;
