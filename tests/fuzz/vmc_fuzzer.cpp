@@ -31,7 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   TraceFrame frame;
   state.show(frame);
-  require(state.vmc().malformed() + state.left_out() + state.frames() <= datagrams, "a datagram counts once");
+  require(state.vmc().malformed() + state.left_out() <= datagrams, "a datagram is left out once");
+  require(state.frames() <= 2 * datagrams, "a datagram ends a frame, and is one");
   require(frame.poses.front().nodes.size() == avatar.nodes.size(), "a pose fits the avatar");
   for (const NodeLocal& node : frame.poses.front().nodes)
     require(std::isfinite(glm::dot(node.rotation, node.rotation)), "rotations are finite");

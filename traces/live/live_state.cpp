@@ -9,8 +9,8 @@ namespace {
 
 /// A sender that has been silent for so long may be followed by another one.
 constexpr std::chrono::seconds kSilence(1);
-/// A pose that is told for longer has lost its end.
-constexpr std::chrono::milliseconds kLongestTelling(100);
+/// A pose of which nothing came for so long is at its end.
+constexpr std::chrono::milliseconds kLongestPause(10);
 
 }  // namespace
 
@@ -37,42 +37,41 @@ bool LiveState::admits(const VmcContent& content, const Datagram& datagram) {
   return admitted;
 }
 
-bool LiveState::completes(const VmcContent& content, Clock::time_point arrived) {
-  if (content.ends || !tells_end_) return true;
-  if (is_told_in_part_) return arrived - part_began_ > kLongestTelling;
-  return !content.pose;
+bool LiveState::completes(const VmcContent& content) const {
+  return content.ends || !tells_end_ || (!content.pose && !is_told_in_part_);
 }
 
-void LiveState::keep() {
-  if (is_told_in_part_) return;
-  state_.show(kept_);
-  mark_teleported(kept_.teleported);
+void LiveState::begin_part(const VmcContent& content, Clock::time_point arrived) {
+  if (!is_told_in_part_) {
+    state_.show(kept_);
+    mark_teleported(kept_.teleported);
+  }
+  is_told_in_part_ = true;
+  if (content.pose) part_told_ = arrived;
 }
 
 bool LiveState::take(const Datagram& datagram) {
+  const std::uint64_t frames_before = frames_;
   bool whole = false;
   bool ends = false;
   const bool changed = state_.take(datagram.bytes, [&](const VmcContent& content) {
     if (!admits(content, datagram)) return false;
+    if (is_told_in_part_ && datagram.arrived - part_told_ > kLongestPause) note_whole(part_told_);
     if (content.tells_end && !std::exchange(tells_end_, true)) begins_ = true;
     ends = content.ends;
-    whole = completes(content, datagram.arrived);
-    if (!whole) {
-      keep();
-      if (!std::exchange(is_told_in_part_, true)) part_began_ = datagram.arrived;
-    }
+    whole = completes(content);
+    if (!whole) begin_part(content, datagram.arrived);
     has_new_pose_ = has_new_pose_ || content.pose;
     return true;
   });
-  if (!whole || (!changed && !ends)) return false;
-  note_whole(datagram.arrived);
-  return true;
+  if (whole && (changed || ends)) note_whole(datagram.arrived);
+  return frames_ != frames_before;
 }
 
 void LiveState::note_whole(Clock::time_point arrived) {
   is_told_in_part_ = false;
   ++frames_;
-  arrived_ = arrived;
+  arrived_ = std::max(arrived_, arrived);
   if (!std::exchange(has_new_pose_, false)) return;
   ++poses_;
   pose_arrived_ = arrived;

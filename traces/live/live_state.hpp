@@ -20,8 +20,8 @@ namespace vestige {
 ///
 /// A datagram that ends a frame (/VMC/Ext/OK) makes all whole that came before. So does a datagram without a message of
 /// the pose, unless a pose was begun and has not ended: colliders may come faster than poses. If a sender never says
-/// where its frames end, each of its datagrams is whole. A pose that has not ended after 0.1 s is taken as it is, since
-/// its end was lost.
+/// where its frames end, each of its datagrams is whole. If a pose was begun and no more of it came for 10 ms, the next
+/// datagram ends it: its end was lost, or the sender does not tell each end.
 class LiveState {
  public:
   using Clock = Datagram::Clock;
@@ -71,9 +71,9 @@ class LiveState {
 
   bool admits(const VmcContent& content, const Datagram& datagram);
   /// Whether all that was told is whole with a datagram of this content.
-  bool completes(const VmcContent& content, Clock::time_point arrived);
-  /// Keeps what is whole, before a part of a frame is told.
-  void keep();
+  bool completes(const VmcContent& content) const;
+  /// Before a part of a frame is told: keeps what is whole.
+  void begin_part(const VmcContent& content, Clock::time_point arrived);
   void note_whole(Clock::time_point arrived);
 
   VmcState state_;
@@ -84,7 +84,7 @@ class LiveState {
   bool is_told_in_part_ = false;  ///< the state holds more than is whole, which is in `kept_`
   bool has_new_pose_ = false;     ///< the state holds a pose that is newer than the newest whole one
   bool begins_ = false;           ///< for `take_beginning`
-  Clock::time_point part_began_;
+  Clock::time_point part_told_;   ///< when the newest datagram with a pose came, while something is told in part
   TraceFrame kept_;
   std::vector<std::uint32_t> teleported_;  ///< of whole frames, not shown yet
   std::uint64_t frames_ = 0;

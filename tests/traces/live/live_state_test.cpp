@@ -122,9 +122,15 @@ TEST_F(WholeFrames, ALostEndHoldsNothingUpForLong) {
   take(bundle({root_at(1), end_of_frame()}));
   EXPECT_FALSE(take(root_at(2)));
   EXPECT_FALSE(take(collider(3, 1, 2, 3)));
-  time_ += 100ms;
+  time_ += 10ms;
+  EXPECT_TRUE(take(root_at(3))) << "ends the pose before";
+  EXPECT_NEAR(root_x(shown()), 2, 1e-6) << "and is not whole itself";
+  EXPECT_THAT(ids_of(shown()), ElementsAre(3U));
+  EXPECT_EQ(state_.pose_arrived(), LiveState::Clock::time_point(2ms)) << "it had arrived when it was told";
+  time_ += 10ms;
   EXPECT_TRUE(take(collider(3, 1, 2, 4)));
-  EXPECT_NEAR(root_x(shown()), 2, 1e-6);
+  EXPECT_NEAR(root_x(shown()), 3, 1e-6);
+  EXPECT_EQ(state_.frames(), 4U);
 }
 
 TEST_F(WholeFrames, ATeleportOfAFrameThatNobodySawIsNotLost) {
