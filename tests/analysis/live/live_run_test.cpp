@@ -112,7 +112,7 @@ class LiveRunTest : public ::testing::Test {
       is_off_ = frame.duty[0] == 0;
     };
     calls.go_on = [] { return true; };
-    calls.note = [&](const LiveMoments& moments) { intervals_.push_back(moments.interval_s.has_value()); };
+    calls.note = [&](const LiveMoments& moments) { intervals_.push_back(moments.interval_s ? 1 : 0); };
     calls.record = [&](const TraceFrame& frame, const std::vector<RecordingNote>& notes) {
       recorded_.push_back(frame);
       notes_.insert(notes_.end(), notes.begin(), notes.end());
@@ -123,7 +123,7 @@ class LiveRunTest : public ::testing::Test {
 
   bool is_off_ = false;
   std::vector<int> duties_;
-  std::vector<bool> intervals_;
+  std::vector<int> intervals_;  ///< 1: told
   std::vector<TraceFrame> recorded_;
   std::vector<RecordingNote> notes_;
 };
@@ -138,7 +138,7 @@ TEST_F(LiveRunTest, EachWholeFrameIsDetectedAndRecordedAtTheTimeWhenItArrived) {
   EXPECT_EQ(recorded_[0].time_ns, 0);
   EXPECT_EQ(recorded_[2].time_ns, 7'000'000);
   EXPECT_EQ(recorded_[2].colliders[1].id, 3U) << "its own id, not that of a column";
-  EXPECT_THAT(intervals_, ElementsAre(false, true, true, true));
+  EXPECT_THAT(intervals_, ElementsAre(0, 1, 1, 1));
   ASSERT_EQ(notes_.size(), 2U) << "what was superseded is noted once";
   EXPECT_EQ(notes_[0].text, "/pose");
   EXPECT_EQ(notes_[1].count, 3U);
@@ -177,7 +177,7 @@ TEST_F(LiveRunTest, SilenceSwitchesOffWhateverTheHoldAndNothingLeadsOutOfIt) {
   EXPECT_EQ(duties_[1], 255);
   EXPECT_THAT(std::vector<int>(duties_.begin() + 2, duties_.end() - 1), Each(0));
   EXPECT_EQ(duties_.back(), 255);
-  EXPECT_FALSE(intervals_[2]) << "the silence is no interval between two frames";
+  EXPECT_EQ(intervals_[2], 0) << "the silence is no interval between two frames";
 }
 
 TEST_F(LiveRunTest, WithARateFramesAreMadeAtTheirTimes) {

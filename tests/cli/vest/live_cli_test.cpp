@@ -29,7 +29,6 @@ using test::placement;
 using test::with_id;
 using ::testing::Each;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 class Live : public test::CommandLineTest {
  protected:
