@@ -5,10 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <memory>
-#include <optional>
+#include <numeric>
+#include <random>
 
+#include "analysis/run/detection_run.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/output/contacts_hash.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
@@ -154,6 +157,36 @@ TEST_F(LiveRunTest, TheHashIsThatOfTheContactsByIdsInTheirOrder) {
   ContactsHash expected;
   expected.add(0, ContactRow(2), ids);
   expected.add(1, ContactRow{contact, contact}, ids);
+  EXPECT_THAT(result.contacts_hashes, ElementsAre(expected.hex()));
+}
+
+TEST_F(LiveRunTest, TheRecordingHasTheSameContactsWhateverIdsCameAndWent) {
+  std::deque<Step> steps;
+  std::mt19937 random(1);
+  for (const std::size_t count : {3, 200, 300, 50, 700, 700, 20, 1, 600}) {
+    Step step;
+    std::vector<std::uint32_t> ids(1000);
+    std::iota(ids.begin(), ids.end(), 0U);
+    std::shuffle(ids.begin(), ids.end(), random);
+    step.ids.assign(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count));
+    step.begins = count == 50;
+    steps.push_back(step);
+    steps.push_back(step);
+  }
+  const LiveResult result = run(steps);
+  EXPECT_GT(result.people[0].contacts, 2000U);
+  EXPECT_GT(result.colliders, 900U) << "more than there were columns at first";
+
+  std::vector<std::uint32_t> all_ids(1000);
+  std::iota(all_ids.begin(), all_ids.end(), 0U);
+  const Avatar avatar = test::skeleton(test::kNodes);
+  AllSegmentsTouch detector;
+  DetectionRun replay(avatar, all_ids, detector);
+  ContactsHash expected;
+  for (const TraceFrame& frame : recorded_) {
+    replay.step(frame);
+    expected.add(frame.index, replay.row(), all_ids);
+  }
   EXPECT_THAT(result.contacts_hashes, ElementsAre(expected.hex()));
 }
 
