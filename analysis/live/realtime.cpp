@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 namespace vestige {
@@ -62,7 +63,7 @@ void take_core(RealTime& real_time) {
     real_time.refused.emplace_back("there is no second core, so none is set apart");
     return;
   }
-  int last = CPU_SETSIZE - 1;
+  std::size_t last = CPU_SETSIZE - 1;
   while (!CPU_ISSET(last, &cores)) --last;
   cpu_set_t own;
   CPU_ZERO(&own);
@@ -71,7 +72,7 @@ void take_core(RealTime& real_time) {
     real_time.refused.push_back(fmt::format("core {} could not be taken: {}", last, std::strerror(error)));
     return;
   }
-  real_time.core = last;
+  real_time.core = static_cast<int>(last);
 }
 
 }  // namespace vestige

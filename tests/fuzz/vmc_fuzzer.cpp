@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "tests/fuzz/require.hpp"
@@ -24,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t length = std::min(said, input.size() - 2);
     Datagram datagram = {.bytes = input.subspan(2, length)};
     datagram.arrived += std::chrono::milliseconds(30 * datagrams);
-    datagram.sender.bytes.front() = std::byte(said % 2);
+    datagram.sender.bytes.front() = static_cast<std::byte>(said % 2);
     state.take(datagram);
     input = input.subspan(2 + length);
     ++datagrams;

@@ -40,7 +40,7 @@ Datagram::Clock::time_point steady_time(const timespec& stamp) {
 std::string to_string(const UdpAddress& address) {
   sockaddr_storage place = {};
   std::memcpy(&place, address.bytes.data(), address.bytes.size());
-  const socklen_t size = place.ss_family == AF_INET6 ? sizeof(sockaddr_in6) : sizeof(sockaddr_in);
+  const auto size = static_cast<socklen_t>(place.ss_family == AF_INET6 ? sizeof(sockaddr_in6) : sizeof(sockaddr_in));
   char host[NI_MAXHOST] = {};
   char port[NI_MAXSERV] = {};
   const int failure = ::getnameinfo(reinterpret_cast<const sockaddr*>(&place), size, host, sizeof host, port,
