@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "analysis/base/provenance.hpp"
+#include "cli/choices/limits_choice.hpp"
 #include "cli/choices/live_choice.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/scene_choice.hpp"
 #include "cli/choices/snapshots.hpp"
 #include "cli/files/export_formats.hpp"
-#include "cli/choices/limits_choice.hpp"
 #include "cli/files/people_choice.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
