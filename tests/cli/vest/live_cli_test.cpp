@@ -278,6 +278,21 @@ TEST_F(Live, RealTimeIsTakenOrSaid) {
   if (real_time["memory_locked"] == false) EXPECT_THAT(told(), HasSubstr("memlock"));
 }
 
+TEST_F(Live, CtrlCEndsASessionAtAnyMoment) {
+  record_walk();
+  const BackgroundProcess source_process({"vestige", "stream", path("walk.mcap"), "--loop", "--port", source()},
+                                         folder_ / "source_error");
+  for (int i = 0; i < 12; ++i) {
+    BackgroundProcess session({"vestige", "live", "--from", source(), "--port", "file:" + path("felt"), "--record",
+                               path("felt.mcap"), "--force", "-q"},
+                              folder_ / "error");
+    std::this_thread::sleep_for(i * 40ms);
+    session.signal(SIGINT);
+    // 0: felt; 1: no frame had come; 130: not even begun.
+    EXPECT_THAT(session.wait(), ::testing::AnyOf(0, 1, 128 + SIGINT)) << i << "\n" << told();
+  }
+}
+
 TEST_F(Live, NobodyWhoSendsIsAnError) {
   const auto session = live({"--record", path("felt.mcap")});
   session->signal(SIGINT);
