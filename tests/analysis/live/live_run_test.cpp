@@ -163,7 +163,7 @@ TEST_F(LiveRunTest, TheHashIsThatOfTheContactsByIdsInTheirOrder) {
 TEST_F(LiveRunTest, TheRecordingHasTheSameContactsWhateverIdsCameAndWent) {
   std::deque<Step> steps;
   std::mt19937 random(1);
-  for (const std::size_t count : {3, 200, 300, 50, 700, 700, 20, 1, 600}) {
+  for (const std::size_t count : {3U, 200U, 300U, 50U, 700U, 700U, 20U, 1U, 600U}) {
     Step step;
     std::vector<std::uint32_t> ids(1000);
     std::iota(ids.begin(), ids.end(), 0U);

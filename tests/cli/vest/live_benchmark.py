@@ -2,9 +2,10 @@
 """Measures how long `vestige live` takes from a datagram's arrival to the last byte written.
 
 Sends, over loopback, 100 colliders 1000 times a second and a pose 90 times a second to a live session, which feels them
-on a simulated board (--board) or a file. Prints the session's latencies as a table.
+on a simulated board (--board) or a file. Prints the session's latencies as a table, and its memory after the first tenth
+of the time and at the end. --busy keeps every core busy with something else meanwhile.
 
-Usage: live_benchmark.py [--bin FOLDER] [--board FIRMWARE.elf] [--seconds S] [--json OUT.json] [FLAG of live ...]
+Usage: live_benchmark.py [--bin FOLDER] [--board FIRMWARE.elf] [--seconds S] [--busy] [--json OUT.json] [FLAG of live ...]
 """
 import argparse
 import json
@@ -57,17 +58,30 @@ def pose(time_s):
                    message("/VMC/Ext/OK", "i", 1)])
 
 
-def send(port, seconds):
+def send(port, seconds, after_a_tenth):
+    # Both motions repeat after a second.
+    collider_bundles = [colliders(k / COLLIDER_HZ) for k in range(COLLIDER_HZ)]
+    pose_bundles = [pose(k / POSE_HZ) for k in range(POSE_HZ)]
     out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    out.connect(("127.0.0.1", port))
     begin = time.monotonic()
     next_pose = 0
-    for k in range(int(seconds * COLLIDER_HZ)):
-        due = begin + k / COLLIDER_HZ
-        time.sleep(max(0, due - time.monotonic()))
+    frames = int(seconds * COLLIDER_HZ)
+    for k in range(frames):
+        time.sleep(max(0, begin + k / COLLIDER_HZ - time.monotonic()))
         if k * POSE_HZ >= next_pose * COLLIDER_HZ:
-            out.sendto(pose(k / COLLIDER_HZ), ("127.0.0.1", port))
+            out.send(pose_bundles[next_pose % POSE_HZ])
             next_pose += 1
-        out.sendto(colliders(k / COLLIDER_HZ), ("127.0.0.1", port))
+        out.send(collider_bundles[k % COLLIDER_HZ])
+        if k == frames // 10:
+            after_a_tenth()
+
+
+def memory_mb(process):
+    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
+        if line.startswith("VmRSS:"):
+            return int(line.split()[1]) / 1e3
+    sys.exit("live_benchmark.py: the session has no memory")
 
 
 def free_port():
@@ -89,6 +103,7 @@ def main():
     parser.add_argument("--bin", type=pathlib.Path, default=pathlib.Path("build/release/bin"))
     parser.add_argument("--board", type=pathlib.Path)
     parser.add_argument("--seconds", type=float, default=20)
+    parser.add_argument("--busy", action="store_true")
     parser.add_argument("--json", type=pathlib.Path)
     options, flags = parser.parse_known_args()
     with tempfile.TemporaryDirectory() as folder_name:
@@ -107,7 +122,14 @@ def main():
             live = subprocess.Popen([options.bin / "vestige", "live", "--from", f"vmc://127.0.0.1:{port}", "--port", vest,
                                      "--json", result, "--force", *flags], stdout=subprocess.DEVNULL, stderr=stream)
         await_true(lambda: "listening" in error.read_text())
-        send(port, options.seconds)
+        neighbours = [subprocess.Popen([sys.executable, "-c", "while True: pass"])
+                      for _ in range(os.cpu_count() if options.busy else 0)]
+        memory = []
+        send(port, options.seconds, lambda: memory.append(memory_mb(live)))
+        memory.append(memory_mb(live))
+        for neighbour in neighbours:
+            neighbour.kill()
+            neighbour.wait()
         live.send_signal(signal.SIGINT)
         code = live.wait()
         if board:
@@ -117,6 +139,7 @@ def main():
         session = json.loads(result.read_text())
     print(f"exit code {code}: {session['frames']} frames, {session['frames_superseded']} superseded, "
           f"{session['contacts']} contacts, {session['changes']} changes, {session['lost']} lost")
+    print(f"memory after a tenth of the time {memory[0]:.1f} MB, at the end {memory[1]:.1f} MB")
     for stage, values in session["latency"].items():
         print(f"{stage:<24} " + "  ".join(f"{name} {values[name]:8.3f}" for name in ("p50_ms", "p95_ms", "p99_ms", "max_ms")))
 

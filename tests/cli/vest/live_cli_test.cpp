@@ -262,7 +262,7 @@ TEST_F(Live, TwoPeopleFeelOneScene) {
   ASSERT_EQ(run("vestige replay felt.mcap --method ccd --json replay.json").exit_code, 0);
   const auto replay = json_in("replay.json");
   EXPECT_EQ(replay["contacts_hash"], json["contacts_hash"]);
-  for (int i : {0, 1}) EXPECT_EQ(replay["avatars"][i]["contacts"], json["avatars"][i]["contacts"]);
+  for (const std::size_t i : {0U, 1U}) EXPECT_EQ(replay["avatars"][i]["contacts"], json["avatars"][i]["contacts"]);
 }
 
 TEST_F(Live, RealTimeIsTakenOrSaid) {
@@ -274,8 +274,8 @@ TEST_F(Live, RealTimeIsTakenOrSaid) {
   const bool all =
       !real_time["priority"].is_null() && real_time["memory_locked"] == true && !real_time["core"].is_null();
   EXPECT_EQ(real_time["refused"].empty(), all);
-  if (real_time["priority"].is_null()) EXPECT_THAT(told(), HasSubstr("rtprio"));
-  if (real_time["memory_locked"] == false) EXPECT_THAT(told(), HasSubstr("memlock"));
+  EXPECT_EQ(told().find("rtprio") != std::string::npos, real_time["priority"].is_null());
+  EXPECT_EQ(told().find("memlock") != std::string::npos, real_time["memory_locked"] == false);
 }
 
 TEST_F(Live, CtrlCEndsASessionAtAnyMoment) {

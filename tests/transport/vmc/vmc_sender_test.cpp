@@ -259,7 +259,7 @@ TEST_F(VmcSending, AProbeChangesNothingInAReceiver) {
   EXPECT_FALSE(sender_.is_refused());
   const auto probe = in_.next();
   ASSERT_TRUE(probe);
-  EXPECT_FALSE(state_.take(*probe));
+  EXPECT_FALSE(state_.take(probe->bytes));
   EXPECT_EQ(state_.malformed(), 0U);
 }
 
