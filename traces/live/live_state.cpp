@@ -19,17 +19,21 @@ LiveState::LiveState(const Avatar& avatar, const glm::dvec3& origin_m, const Sta
   state_.show(kept_);
 }
 
-bool LiveState::Speaker::admits(const Datagram& datagram) {
-  if (!address || datagram.arrived - heard > kSilence) address = datagram.sender;
-  if (*address != datagram.sender) return false;
+bool LiveState::Speaker::admits(const Datagram& datagram, bool says_something) {
+  if (address && datagram.arrived - heard > kSilence) address.reset();
+  if (address && *address != datagram.sender) return false;
+  if (!says_something) return true;
+  address = datagram.sender;
   heard = datagram.arrived;
   return true;
 }
 
 bool LiveState::admits(const VmcContent& content, const Datagram& datagram) {
   if (senders_ == Senders::kAny) return true;
-  const bool admitted =
-      (!content.vmc || of_pose_.admits(datagram)) && (!content.vestige || of_colliders_.admits(datagram));
+  // Whoever says that there is no frame yet may only be asking whether somebody listens.
+  const bool tells_pose = content.pose || content.tells_end;
+  const bool admitted = (!tells_pose || of_pose_.admits(datagram, content.pose || content.ends)) &&
+                        (!content.vestige || of_colliders_.admits(datagram, true));
   if (!admitted) {
     ++left_out_;
     if (!stranger_) stranger_ = datagram.sender;

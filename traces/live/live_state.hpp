@@ -66,7 +66,8 @@ class LiveState {
     std::optional<UdpAddress> address;
     Clock::time_point heard;
 
-    bool admits(const Datagram& datagram);
+    /// Whether a datagram is of whoever is heard. If nobody is, its sender is from now on, if it says something.
+    bool admits(const Datagram& datagram, bool says_something);
   };
 
   bool admits(const VmcContent& content, const Datagram& datagram);

@@ -85,7 +85,6 @@ VmcContent VmcState::check(std::span<const OscMessage> messages) const {
   std::size_t colliders = colliders_.size();
   std::size_t markers = markers_.size();
   for (const OscMessage& message : messages) {
-    content.vmc = content.vmc || message.address.starts_with("/VMC/");
     if (message.address == "/VMC/Ext/Bone/Pos" || message.address == "/VMC/Ext/Root/Pos") {
       text(message);
       placement_of(message);

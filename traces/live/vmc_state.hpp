@@ -21,7 +21,6 @@ namespace vestige {
 
 /// What the messages of a datagram are about.
 struct VmcContent {
-  bool vmc = false;        ///< any of VMC's
   bool pose = false;       ///< of a bone or the root
   bool vestige = false;    ///< of a collider, a teleport or a marker
   bool tells_end = false;  ///< /VMC/Ext/OK, with any value: the sender says where its frames end

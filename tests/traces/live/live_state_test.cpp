@@ -161,7 +161,8 @@ TEST_F(WholeFrames, NoMotionLeadsToTheFirstPoseAndToTheFirstWholeOne) {
 
 TEST_F(WholeFrames, OfSeveralSendersTheFirstIsHeardUntilItIsSilent) {
   LiveState state(avatar_, glm::dvec3(0), {}, LiveState::Senders::kOneAtATime);
-  EXPECT_TRUE(take(root_at(1), state, 1));
+  EXPECT_FALSE(take(end_of_frame(0), state, 2)) << "asks whether somebody listens, and says nothing yet";
+  EXPECT_TRUE(take(bundle({root_at(1), end_of_frame()}), state, 1));
   EXPECT_FALSE(take(root_at(2), state, 2));
   EXPECT_NEAR(root_x(shown(state)), 1, 1e-6);
   EXPECT_TRUE(take(collider(3, 1, 2, 3), state, 2)) << "one program may send the pose, and another colliders";
@@ -169,8 +170,8 @@ TEST_F(WholeFrames, OfSeveralSendersTheFirstIsHeardUntilItIsSilent) {
   EXPECT_EQ(state.left_out(), 2U);
   EXPECT_EQ(state.stranger(), address(2));
   time_ += 1001ms;
-  EXPECT_TRUE(take(root_at(2), state, 2));
-  EXPECT_FALSE(take(root_at(1), state, 1));
+  EXPECT_TRUE(take(bundle({root_at(2), end_of_frame()}), state, 2));
+  EXPECT_FALSE(take(bundle({root_at(1), end_of_frame()}), state, 1));
   EXPECT_TRUE(take(root_at(3), state_, 1));
   EXPECT_TRUE(take(root_at(4), state_, 2)) << "a state that hears everybody";
 }
