@@ -292,6 +292,10 @@ std::chrono::microseconds OpenSink::floor() const {
   return std::max({floor, std::chrono::ceil<std::chrono::microseconds>(line), board_time(outputs_)});
 }
 
+std::chrono::microseconds OpenSink::refresh() const {
+  return std::min<std::chrono::microseconds>(SenderOptions().refresh, std::chrono::milliseconds(choice_.ttl_ms) / 3);
+}
+
 void OpenSink::commit() {
   if (file_ != nullptr) file_->commit();
 }

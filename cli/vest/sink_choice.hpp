@@ -83,6 +83,8 @@ class OpenSink {
   void warn_of_actuators_beyond(std::size_t actuators, Verbosity verbosity) const;
   /// Returns the least time between two frames: 5 ms, or longer if the line or the board's chips take longer for one.
   std::chrono::microseconds floor() const;
+  /// Returns after how long an unchanged state is sent again: 20 ms, or less to be within a third of --ttl.
+  std::chrono::microseconds refresh() const;
   /// Finishes the output file, if there is one.
   void commit();
 

@@ -57,7 +57,7 @@ struct Checked {
 
 /// Each actuator in turn; says which while it runs.
 Checked run_in_turn(const OpenSink& sink, std::size_t actuators, const CheckOptions& options) {
-  Sender sender(sink.sink(), {.floor = sink.floor()},
+  Sender sender(sink.sink(), {.floor = sink.floor(), .refresh = sink.refresh()},
                 [&](const std::string& text) { warn(text, options.common.verbosity()); });
   ActuatorFrame frame;
   Checked checked;

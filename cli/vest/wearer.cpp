@@ -44,7 +44,8 @@ void Wearer::open(const std::function<void(const std::string&)>& tell) {
 }
 
 void Wearer::start(const std::function<void(const std::string&)>& tell) {
-  sender_.emplace(sink_->sink(), SenderOptions{.floor = sink_->floor(), .keep_log = log_.has_value()}, tell);
+  const SenderOptions options = {.floor = sink_->floor(), .refresh = sink_->refresh(), .keep_log = log_.has_value()};
+  sender_.emplace(sink_->sink(), options, tell);
 }
 
 void Wearer::still_here(const std::function<void(const std::string&)>& tell) {

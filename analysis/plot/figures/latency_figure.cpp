@@ -84,7 +84,7 @@ class LatencyFigure : public Figure {
     for (const auto& [limit_ms, words] : kLimits) {
       const double x_pt = x.place_pt(limit_ms);
       canvas.line({x_pt, plot.bottom_pt}, {x_pt, plot.top_pt}, {kSmallPrint, 0.6, Dash::kDashed});
-      canvas.text({x_pt - 2, plot.top_pt - 2}, words, kLimitStyle);
+      canvas.text({x_pt - 2, plot.bottom_pt + 9}, words, kLimitStyle);  // where lines seldom are
     }
     draw_x_axis(canvas, plot, x, x_ticks, "Time since the arrival (ms)");
     draw_y_axis(canvas, plot, y, y_ticks, "Frames that took up to it (%)");

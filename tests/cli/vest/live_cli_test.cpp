@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <limits>
 #include <memory>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -195,6 +197,51 @@ TEST_F(Live, WhatIsNoPoseMovesNothingAndIsSaid) {
   EXPECT_THAT(told(), HasSubstr("argument 2 is not finite"));
   EXPECT_THAT(told(), HasSubstr("a second program, 127.0.0.1:"));
   EXPECT_FALSE(std::ranges::any_of(log(), is_on));
+}
+
+/// Bytes that no receiver should believe, and a strike by somebody who is not heard.
+std::vector<std::byte> hostile(std::mt19937& random) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  std::vector<std::byte> bytes = bundle({collider(1, 0, 1.2F, -1), with_id("/VMC/Ext/OK", 1)});
+  switch (random() % 4) {
+    case 0:
+      break;
+    case 1:
+      bytes.resize(1 + random() % (bytes.size() - 1));
+      break;
+    case 2:
+      bytes = bundle({collider(1, 0, random() % 2 == 0 ? kNaN : 1e30F, -1), with_id("/VMC/Ext/OK", 1)});
+      break;
+    default:
+      for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
+  }
+  return bytes;
+}
+
+TEST_F(Live, HostileDatagramsMoveNoMotor) {
+  const int count = std::getenv("VESTIGE_LONG") != nullptr ? 1'000'000 : 20'000;
+  const auto session = live();
+  const test::UdpSender sender(port_);
+  const test::UdpSender other(port_);
+  std::mt19937 random(1);
+  const auto there = [](float z) { return bundle({collider(1, 0, 1.2F, z), with_id("/VMC/Ext/OK", 1)}); };
+  for (int i = 0; i < count; ++i) {
+    if (i % 100 == 0) {
+      sender.send(there(1));
+      std::this_thread::sleep_for(1ms);
+    }
+    other.send(hostile(random));
+  }
+  std::this_thread::sleep_for(500ms);
+  sender.send(there(1));
+  std::this_thread::sleep_for(50ms);
+  sender.send(there(-1));  // through the body
+  EXPECT_EQ(end(*session), 3);
+  const auto json = json_in("live.json");
+  EXPECT_EQ(json["contacts"], 1) << "the valid one";
+  const auto& lost = json["lost"];
+  const int left_out = lost["malformed"].get<int>() + lost["strangers"].get<int>() + lost["overflowed"].get<int>();
+  EXPECT_GT(left_out, count * 9 / 10) << "most of them are whole enough to be counted";
 }
 
 TEST_F(Live, LinesOnStandardInputAreFelt) {
