@@ -109,18 +109,17 @@ def main():
     with tempfile.TemporaryDirectory() as folder_name:
         folder = pathlib.Path(folder_name)
         board = None
-        vest = f"file:{folder}/felt"
         if options.board:
-            vest = f"{folder}/vest"
-            board = subprocess.Popen([options.bin / "simulated_board", options.board, "--link", vest],
+            board = subprocess.Popen([options.bin / "simulated_board", options.board, "--link", folder / "vest"],
                                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            await_true(lambda: os.path.exists(vest))
+            await_true(lambda: os.path.exists(folder / "vest"))
         port = free_port()
-        result = options.json or folder / "live.json"
         error = folder / "error"
         with error.open("w") as stream:
-            live = subprocess.Popen([options.bin / "vestige", "live", "--from", f"vmc://127.0.0.1:{port}", "--port", vest,
-                                     "--json", result, "--force", *flags], stdout=subprocess.DEVNULL, stderr=stream)
+            live = subprocess.Popen(["vestige", "live", "--from", f"vmc://127.0.0.1:{port}", "--port",
+                                     "vest" if board else "file:felt", "--json", "live.json", *flags], cwd=folder,
+                                    executable=options.bin.resolve() / "vestige", stdout=subprocess.DEVNULL,
+                                    stderr=stream)
         await_true(lambda: "listening" in error.read_text())
         neighbours = [subprocess.Popen([sys.executable, "-c", "while True: pass"])
                       for _ in range(os.cpu_count() if options.busy else 0)]
@@ -136,7 +135,10 @@ def main():
             board.send_signal(signal.SIGINT)
             board.wait()
         print(error.read_text(), end="")
-        session = json.loads(result.read_text())
+        text_of_session = (folder / "live.json").read_text()
+    if options.json:
+        options.json.write_text(text_of_session)
+    session = json.loads(text_of_session)
     print(f"exit code {code}: {session['frames']} frames, {session['frames_superseded']} superseded, "
           f"{session['contacts']} contacts, {session['changes']} changes, {session['lost']} lost")
     print(f"memory after a tenth of the time {memory[0]:.1f} MB, at the end {memory[1]:.1f} MB")
