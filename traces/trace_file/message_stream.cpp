@@ -44,7 +44,7 @@ void StreamTable::add(mcap::Schema schema) {
 
 void StreamTable::add(mcap::Channel channel) {
   const std::uint16_t id = channel.id;
-  if (streams_[id].stream != Stream::kForeign) return;
+  if (id_of(id).stream != Stream::kForeign) return;
   if (const auto known = channels_.find(id); known != channels_.end())
     channels_of_schema_.erase({known->second.schema_id, id});
   channels_of_schema_.emplace(channel.schema_id, id);
@@ -55,6 +55,7 @@ void StreamTable::update(const mcap::Channel& channel) {
   const auto schema = schemas_.find(channel.schema_id);
   const trace_format::StreamId stream =
       trace_format::recognise(channel, schema == schemas_.end() ? nullptr : &schema->second);
+  if (channel.id >= streams_.size()) streams_.resize(std::size_t{channel.id} + 1);
   streams_[channel.id] = stream;
   if (stream.stream == Stream::kForeign) return;
   const auto [first, is_new] = channel_of_.try_emplace(stream, channel.id);

@@ -25,11 +25,11 @@ class StreamTable {
   void add(mcap::Schema schema);
   void add(mcap::Channel channel);
   trace_format::Stream stream_of(std::uint16_t channel_id) const {
-    const trace_format::StreamId& stream = streams_[channel_id];
+    const trace_format::StreamId stream = id_of(channel_id);
     return is_foreign(stream.person) ? trace_format::Stream::kForeign : stream.stream;
   }
   /// Whose pose a channel carries.
-  std::size_t person_of(std::uint16_t channel_id) const { return streams_[channel_id].person; }
+  std::size_t person_of(std::uint16_t channel_id) const { return id_of(channel_id).person; }
   /// Returns the stream's channel, or null until it is known. Of /pose, that of a person.
   const mcap::Channel* find(trace_format::Stream stream, std::size_t person = 0) const;
   /// Returns the channels /pose that are known, by person.
@@ -41,6 +41,9 @@ class StreamTable {
 
  private:
   void update(const mcap::Channel& channel);
+  trace_format::StreamId id_of(std::uint16_t channel_id) const {
+    return channel_id < streams_.size() ? streams_[channel_id] : trace_format::StreamId{};
+  }
   /// A trace of an earlier format version may have a channel /pose/2 of another program.
   bool is_foreign(std::size_t person) const { return person > 0 && knows_one_person_; }
 
@@ -49,7 +52,7 @@ class StreamTable {
   std::map<std::uint16_t, mcap::Channel> channels_;
   std::set<std::pair<std::uint16_t, std::uint16_t>> channels_of_schema_;  ///< schema's id, channel's id
   std::map<trace_format::StreamId, std::uint16_t> channel_of_;  ///< the lowest id, if several channels are recognised
-  std::vector<trace_format::StreamId> streams_ = std::vector<trace_format::StreamId>(1 << 16);  ///< by channel id
+  std::vector<trace_format::StreamId> streams_;                 ///< by channel id, up to the largest id that was added
 };
 
 /// A message of one of Vestige's own streams.
