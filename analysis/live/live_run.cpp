@@ -27,10 +27,6 @@ std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
-void note_lost(std::vector<RecordingNote>& notes, const char* topic, std::uint64_t count) {
-  if (count > 0) notes.push_back({.kind = RecordingNote::Kind::kDropped, .count = count, .text = topic});
-}
-
 class LiveRun {
  public:
   LiveRun(LiveInput& input, std::span<const DetectedPerson> people, const LiveOptions& options, const LiveCalls& calls)
@@ -156,11 +152,13 @@ class LiveRun {
 
   std::vector<RecordingNote> take_notes() {
     std::vector<RecordingNote> notes = input_.take_markers();
+    const auto note = [&notes](RecordingNote::Kind kind, std::uint64_t count, const char* text) {
+      if (count > 0) notes.push_back({.kind = kind, .count = count, .text = text});
+    };
     const std::uint64_t lost = input_.losses().total();
-    note_lost(notes, kInput, lost - std::exchange(lost_noted_, lost));
-    const std::uint64_t superseded = result_.superseded - std::exchange(superseded_noted_, result_.superseded);
-    note_lost(notes, "/pose", superseded);
-    note_lost(notes, "/colliders", superseded);
+    note(RecordingNote::Kind::kDropped, lost - std::exchange(lost_noted_, lost), kInput);
+    const std::uint64_t before = std::exchange(superseded_noted_, result_.superseded);
+    note(RecordingNote::Kind::kSuperseded, result_.superseded - before, "");
     return notes;
   }
 

@@ -59,7 +59,7 @@ void LiveRecorder::take(const TraceFrame& frame, std::vector<RecordingNote> note
 /// Counts of one topic are added up, so that a disk that does not keep up costs no memory.
 void LiveRecorder::add(RecordingNote note) {
   const auto before = std::ranges::find_if(notes_, [&](const RecordingNote& other) {
-    return other.kind == RecordingNote::Kind::kDropped && other.kind == note.kind && other.text == note.text;
+    return note.kind != RecordingNote::Kind::kMarker && other.kind == note.kind && other.text == note.text;
   });
   if (before != notes_.end()) {
     before->count += note.count;

@@ -1,6 +1,10 @@
 #include "traces/recording/frame_ring.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "traces/base/nanoseconds.hpp"
 #include "traces/mcap/compression.hpp"
@@ -30,15 +34,25 @@ void append(mcap::ByteBuffer& out, Stream stream, std::uint64_t index, std::int6
                                          .data = data});
 }
 
+using Kind = RecordingNote::Kind;
+constexpr std::array<std::pair<Kind, std::string_view>, 3> kKinds = {
+    {{Kind::kDropped, trace_format::kDroppedKind},
+     {Kind::kSuperseded, trace_format::kSupersededKind},
+     {Kind::kMarker, trace_format::kMarkerKind}}};
+
+std::string_view text_of(Kind kind) {
+  return std::ranges::find(kKinds, kind, &std::pair<Kind, std::string_view>::first)->second;
+}
+
+Kind kind_of(std::string_view text) {
+  return std::ranges::find(kKinds, text, &std::pair<Kind, std::string_view>::second)->first;
+}
+
 }  // namespace
 
 void FrameRing::push(const RecordingNote& note) {
-  const bool dropped = note.kind == RecordingNote::Kind::kDropped;
   append(open_, Stream::kEvents, 0, last_ns_,
-         encoder_.event({.time_ns = last_ns_,
-                         .kind = dropped ? trace_format::kDroppedKind : trace_format::kMarkerKind,
-                         .count = note.count,
-                         .text = note.text}));
+         encoder_.event({.time_ns = last_ns_, .kind = text_of(note.kind), .count = note.count, .text = note.text}));
 }
 
 void FrameRing::push(const TraceFrame& frame) {
@@ -111,10 +125,7 @@ void FrameRing::Contents::for_each(const TakeNote& take_note, const TakeFrame& t
         if (event.kind == trace_format::kTeleportKind) {
           frame.teleported.push_back(event.collider);
         } else {
-          const bool dropped = event.kind == trace_format::kDroppedKind;
-          notes.push_back({.kind = dropped ? RecordingNote::Kind::kDropped : RecordingNote::Kind::kMarker,
-                           .count = event.count,
-                           .text = std::string(event.text)});
+          notes.push_back({.kind = kind_of(event.kind), .count = event.count, .text = std::string(event.text)});
         }
       } else if (message.channel_id == id_of(Stream::kPose)) {
         if (person == frame.poses.size()) frame.poses.emplace_back();

@@ -17,9 +17,9 @@ namespace vestige {
 
 /// A note that is recorded beside the frames.
 struct RecordingNote {
-  enum class Kind : std::uint8_t { kDropped, kMarker };
+  enum class Kind : std::uint8_t { kDropped, kSuperseded, kMarker };
   Kind kind = Kind::kDropped;
-  std::uint64_t count = 0;  ///< number of messages lost
+  std::uint64_t count = 0;  ///< number of messages lost, or of frames superseded
   std::string text = {};    ///< topic of the lost messages, or text of the marker
 };
 

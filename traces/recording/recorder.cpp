@@ -24,10 +24,16 @@ namespace {
 constexpr double kLatest_ns = 9.2e18;  ///< just below the largest 63-bit number
 
 void note_in(TraceWriter& writer, const RecordingNote& note) {
-  if (note.kind == RecordingNote::Kind::kDropped) {
-    writer.note_dropped(note.text, note.count);
-  } else {
-    writer.note_marker(note.text);
+  switch (note.kind) {
+    case RecordingNote::Kind::kDropped:
+      writer.note_dropped(note.text, note.count);
+      break;
+    case RecordingNote::Kind::kSuperseded:
+      writer.note_superseded(note.count);
+      break;
+    case RecordingNote::Kind::kMarker:
+      writer.note_marker(note.text);
+      break;
   }
 }
 

@@ -54,6 +54,7 @@ inline constexpr double kFarthest_m = 1e9;  ///< a position beyond this distance
 
 inline constexpr std::string_view kTeleportKind = "teleport";
 inline constexpr std::string_view kDroppedKind = "dropped";
+inline constexpr std::string_view kSupersededKind = "superseded";
 inline constexpr std::string_view kMarkerKind = "marker";
 
 enum class Stream : std::uint8_t { kPose, kColliders, kEvents, kForeign };

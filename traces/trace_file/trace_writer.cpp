@@ -345,6 +345,10 @@ void TraceWriter::note_dropped(std::string_view topic, std::uint64_t count) {
   implementation_->note({.kind = trace_format::kDroppedKind, .count = count, .text = std::string(topic)});
 }
 
+void TraceWriter::note_superseded(std::uint64_t count) {
+  implementation_->note({.kind = trace_format::kSupersededKind, .count = count, .text = {}});
+}
+
 void TraceWriter::note_marker(std::string_view text) {
   implementation_->note({.kind = trace_format::kMarkerKind, .text = std::string(text)});
 }

@@ -84,7 +84,9 @@ class TraceWriter {
   /// Notes that `count` messages of `topic` were lost since the last frame. The note is stored with the next frame, or
   /// with the last one if no other follows.
   void note_dropped(std::string_view topic, std::uint64_t count);
-  /// Adds a marker that the user wants to find again. It is stored like the note above.
+  /// Notes that `count` frames of a live source were left out, since a newer one had arrived. It is stored likewise.
+  void note_superseded(std::uint64_t count);
+  /// Adds a marker that the user wants to find again. It is stored likewise.
   void note_marker(std::string_view text);
   /// Writes the open chunk if it is older than `chunk_s`. `write` does so too; this is for callers that have no frame.
   void write_old_chunk();

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -159,7 +160,7 @@ TEST_F(Live, AfterSilenceNothingMovesInTheFirstFrame) {
 
 TEST_F(Live, AFloodIsTakenWithoutAQueueAndEveryDatagramIsAccountedFor) {
   constexpr int kDatagrams = 20'000;
-  const auto session = live();
+  const auto session = live({"--record", path("felt.mcap")});
   const test::UdpSender sender(port_);
   for (int i = 0; i < kDatagrams; ++i) {
     sender.send(collider(i % 50, 0, 1.2F, 0.5F + static_cast<float>(i % 7) * 0.1F));
@@ -175,6 +176,15 @@ TEST_F(Live, AFloodIsTakenWithoutAQueueAndEveryDatagramIsAccountedFor) {
             kDatagrams + 1);
   EXPECT_GT(json["frames"], 10);
   EXPECT_EQ(lost["malformed"], 0);
+  // The recording has them, and has lost nothing by that.
+  std::istringstream events(run("vestige cat felt.mcap --topic /events").standard_output);
+  int superseded = 0;
+  for (std::string line; std::getline(events, line);)
+    if (const auto event = nlohmann::json::parse(line)["data"]; event["kind"] == "superseded")
+      superseded += event["count"].get<int>();
+  EXPECT_EQ(superseded, json["frames_superseded"]);
+  EXPECT_EQ(run("vestige inspect felt.mcap --json inspect.json").exit_code, 0);
+  EXPECT_EQ(json_in("inspect.json")["dropped"], lost["overflowed"]);
 }
 
 TEST_F(Live, WhatIsNoPoseMovesNothingAndIsSaid) {
