@@ -7,6 +7,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "traces/timeline/bhaptics_vest.hpp"
+
 namespace vestige {
 
 namespace {
@@ -14,20 +16,18 @@ namespace {
 constexpr std::int64_t kBin_ms = 20;
 constexpr std::int64_t kBin_us = kBin_ms * 1000;
 constexpr std::int64_t kMostBins = 24 * 3600 * std::int64_t{1000} / kBin_ms;
-constexpr std::size_t kSideActuators = 20;
-constexpr std::string_view kSides[] = {"VestFront", "VestBack"};
 
 }  // namespace
 
 TimelineTact::TimelineTact(const std::filesystem::path& path, Overwrite overwrite, std::size_t actuator_count)
     : file_(path, overwrite), actuator_count_(actuator_count) {
-  const std::size_t most = kSideActuators * std::size(kSides);
+  const std::size_t most = kBhapticsSideActuators * std::size(kBhapticsSides);
   if (actuator_count > most)
     throw UsageError(path.string(),
                      fmt::format("there are {} actuators, but a vest in a .tact file has {}", actuator_count, most),
                      "write a .hjif or a .csv");
   const nlohmann::json name = path.stem().string();
-  file_.write(fmt::format(R"({{"intervalMillis":{},"size":{},"name":{},"feedback":{{)", kBin_ms, kSideActuators,
+  file_.write(fmt::format(R"({{"intervalMillis":{},"size":{},"name":{},"feedback":{{)", kBin_ms, kBhapticsSideActuators,
                           name.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
 }
 
@@ -58,11 +58,11 @@ void TimelineTact::write(const ActuatorFrame& frame) {
 
 void TimelineTact::write_bin(const std::vector<std::uint8_t>& duty) {
   std::string text = fmt::format("{}\n\"{}\":[", bin_ == 0 ? "" : ",", bin_ * kBin_ms);
-  for (std::size_t first = 0; first < actuator_count_; first += kSideActuators) {
+  for (std::size_t first = 0; first < actuator_count_; first += kBhapticsSideActuators) {
     fmt::format_to(std::back_inserter(text), R"({}{{"position":"{}","mode":"DOT_MODE","values":[)",
-                   first == 0 ? "" : ",", kSides[first / kSideActuators]);
-    for (std::size_t i = first; i < first + kSideActuators; ++i) {
-      const long percent = i < duty.size() ? std::lround(duty[i] * 100 / 255.0) : 0;
+                   first == 0 ? "" : ",", kBhapticsSides[first / kBhapticsSideActuators]);
+    for (std::size_t i = first; i < first + kBhapticsSideActuators; ++i) {
+      const long percent = i < duty.size() ? bhaptics_intensity(duty[i]) : 0;
       fmt::format_to(std::back_inserter(text), "{}{}", i == first ? "" : ",", percent);
     }
     text += R"(],"texture":0})";
