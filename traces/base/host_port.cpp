@@ -9,10 +9,12 @@
 
 namespace vestige {
 
-HostPort parse_host_port(std::string_view url, std::string_view scheme, std::string_view flag) {
+HostPort parse_host_port(std::string_view url, std::string_view scheme, std::string_view flag,
+                         std::uint16_t default_port) {
   const auto refuse = [&](const std::string& cause) {
     return UsageError(flag, fmt::format("'{}' {}", url, cause),
-                      fmt::format("name a host and a port: {0}://127.0.0.1:9000, {0}://[::1]:9000", scheme));
+                      fmt::format("name a host and a port: {0}://127.0.0.1:{1}, {0}://[::1]:{1}", scheme,
+                                  default_port == 0 ? 9000 : default_port));
   };
   const std::string beginning = fmt::format("{}://", scheme);
   if (!url.starts_with(beginning)) throw refuse("does not begin with " + beginning);
@@ -33,9 +35,10 @@ HostPort parse_host_port(std::string_view url, std::string_view scheme, std::str
       throw refuse("has more than one colon; an IPv6 address must be in brackets");
   }
   if (host.empty()) throw refuse("has no host");
+  HostPort place{.host = std::string(host), .port = default_port};
+  if (rest.empty() && default_port != 0) return place;
   if (!rest.starts_with(':')) throw refuse("has no port");
   rest.remove_prefix(1);
-  HostPort place{.host = std::string(host)};
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), place.port);
   if (error != std::errc() || end != rest.data() + rest.size() || place.port == 0)
     throw refuse(fmt::format("has the port '{}', which is not a number from 1 to 65535", rest));
