@@ -23,9 +23,9 @@ set(CPACK_COMPONENT_VESTIGE_DESCRIPTION
 Vestige records traces of an animated avatar and the colliders around it,
 replays them through a geometry-shader collision detector, says which
 vibrator of a haptic vest fires when, and measures the detector.")
-# OpenGL, Embree and HDF5 are opened at run time, which dpkg-shlibdeps does not see.
+# OpenGL, Embree, HDF5 and libwebsockets are opened at run time, which dpkg-shlibdeps does not see.
 set(CPACK_DEBIAN_VESTIGE_PACKAGE_RECOMMENDS "libegl1, libegl-mesa0, libgl1-mesa-dri")
-set(CPACK_DEBIAN_VESTIGE_PACKAGE_SUGGESTS "vestige-plot, libosmesa6, libembree3-3, libhdf5-103-1")
+set(CPACK_DEBIAN_VESTIGE_PACKAGE_SUGGESTS "vestige-plot, libosmesa6, libembree3-3, libhdf5-103-1, libwebsockets17")
 set(deb_depends vestige ${share}/vestige.stamp)
 
 # Copyright, README and changelog, where Debian wants them.
