@@ -247,6 +247,8 @@ constexpr Field kLive[] = {
 constexpr Field kLink[] = {
     {"port", "", "--port, as given"},
     {"datagrams", "", "datagrams sent; only over OSC and VMC"},
+    {"texts", "", "requests sent to bHaptics' Player"},
+    {"duration_ms", "ms", "how long bHaptics' Player plays a frame if no newer one comes"},
     {"frame_bytes", "bytes", "length of one frame on the line"},
     {"baud", "bit/s", "speed of the line"},
     {"line_time_us", "us", "how long one frame takes on the line"},

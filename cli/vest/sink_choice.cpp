@@ -14,6 +14,7 @@
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
+#include "transport/sinks/bhaptics_sink.hpp"
 #include "transport/sinks/osc_sink.hpp"
 #include "transport/sinks/serial_sink.hpp"
 #include "transport/sinks/wire_file_sink.hpp"
@@ -26,7 +27,8 @@ constexpr const char* kVestGroup = "Vest";
 
 /// The scheme of a URL may be in capitals (RFC 3986, section 3.1).
 std::string with_small_scheme(std::string port) {
-  for (const std::string_view scheme : {SinkChoice::kOscPrefix, SinkChoice::kFilePrefix, SinkChoice::kVmcPrefix})
+  for (const std::string_view scheme :
+       {SinkChoice::kOscPrefix, SinkChoice::kBhapticsPrefix, SinkChoice::kFilePrefix, SinkChoice::kVmcPrefix})
     if (::strncasecmp(port.c_str(), scheme.data(), scheme.size()) == 0) port.replace(0, scheme.size(), scheme);
   return port;
 }
@@ -110,7 +112,7 @@ void add_sink_settings(CLI::App& verb, SinkChoice& choice, const std::string& le
       ->type_name("N");
   add("--ttl", choice.ttl_ms,
       "If no newer frame comes for this time, in ms, the board switches all actuators off; over OSC, a process beside "
-      "this one does. In steps of 10")
+      "this one does, and bHaptics' Player does after 60 ms at the latest. In steps of 10")
       ->capture_default_str()
       // A state that stays is sent again in time only where it lives so long (`ttl_units` takes less).
       ->check(help::whole_number(50, 2550))
@@ -154,7 +156,8 @@ CLI::Option* add_port(CLI::App& verb, auto& value, const std::string& others, co
   return verb
       .add_option("--port", value,
                   "Where frames go: a serial device (/dev/ttyUSB0: an XBee, or the board's USB); osc://HOST:PORT, "
-                  "parameters over UDP; file:OUT, a file of frames as on the wire; '-', the same on standard output" +
+                  "parameters over UDP; bhaptics://HOST, bHaptics' Player, at port 15881 unless :PORT follows; "
+                  "file:OUT, a file of frames as on the wire; '-', the same on standard output" +
                       others + remark)
       ->group(kVestGroup)
       ->required()
@@ -170,7 +173,7 @@ CLI::Option* add_port(CLI::App& verb, auto& value, const std::string& others, co
 }  // namespace
 
 void add_sink_options(CLI::App& verb, SinkChoice& choice) {
-  add_port(verb, choice.port, "", "")->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
+  add_port(verb, choice.port, "", "")->type_name("DEVICE|osc://HOST:PORT|bhaptics://HOST|file:OUT|-");
   add_sink_settings(verb, choice, "");
   verb.parse_complete_callback([&verb, &choice] {
     refuse_vmc(choice);
@@ -186,8 +189,8 @@ void add_sinks_options(CLI::App& verb, SinkChoice& settings, std::vector<std::st
                        "record --live"
                      : "",
            "; of several people, that of person K; repeat for more people")
-      ->type_name(takes_vmc ? "[K=]DEVICE|osc://HOST:PORT|vmc://HOST:PORT|file:OUT|-"
-                            : "[K=]DEVICE|osc://HOST:PORT|file:OUT|-")
+      ->type_name(takes_vmc ? "[K=]DEVICE|osc://HOST:PORT|bhaptics://HOST|vmc://HOST:PORT|file:OUT|-"
+                            : "[K=]DEVICE|osc://HOST:PORT|bhaptics://HOST|file:OUT|-")
       ->expected(1)
       ->take_all();
   add_sink_settings(verb, settings, levels_remark);
@@ -226,6 +229,10 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
       warn(fmt::format("{}: no program listens there now; frames are sent anyway", sink->name()), verbosity);
     osc_ = sink.get();
     sink_ = std::move(sink);
+    return;
+  }
+  if (choice.is_bhaptics()) {
+    open_bhaptics(actuator_names);
     return;
   }
   if (choice.is_file()) {
@@ -276,6 +283,18 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
 
 OpenSink::~OpenSink() = default;
 
+void OpenSink::open_bhaptics(const std::vector<std::string>& actuator_names) {
+  constexpr int kRefreshesPlayed = 3;  // one or two refreshes may be late
+  BhapticsOptions bhaptics;
+  bhaptics.place = parse_bhaptics_url(choice_.port);
+  bhaptics.duration =
+      std::min(std::chrono::duration_cast<std::chrono::milliseconds>(SenderOptions().refresh) * kRefreshesPlayed,
+               std::chrono::milliseconds(choice_.ttl_ms));
+  auto sink = std::make_unique<BhapticsSink>(bhaptics, actuator_names);
+  bhaptics_ = sink.get();
+  sink_ = std::move(sink);
+}
+
 void OpenSink::warn_of_actuators_beyond(std::size_t actuators, Verbosity verbosity) const {
   if (greeting_ && greeting_->actuator_count < actuators)
     warn(fmt::format(
@@ -318,6 +337,12 @@ nlohmann::ordered_json OpenSink::link_json() const {
     json["ttl_ms"] = choice_.ttl_ms;
     return json;
   }
+  if (bhaptics_ != nullptr) {
+    json["texts"] = bhaptics_->texts_sent();
+    json["duration_ms"] = bhaptics_->duration().count();
+    json["ttl_ms"] = choice_.ttl_ms;
+    return json;
+  }
   json["frame_bytes"] = frame_bytes_;
   if (choice_.is_file()) return json;
   json["baud"] = choice_.baud;
@@ -331,6 +356,8 @@ nlohmann::ordered_json OpenSink::link_json() const {
 std::string OpenSink::describe_link(std::uint64_t bytes) const {
   if (osc_ != nullptr)
     return fmt::format("{}: {} bytes in {}\n", sink_->name(), bytes, counted(osc_->datagrams_sent(), "datagram"));
+  if (bhaptics_ != nullptr)
+    return fmt::format("{}: {} bytes in {}\n", sink_->name(), bytes, counted(bhaptics_->texts_sent(), "text"));
   if (choice_.is_file()) return fmt::format("{}: {} bytes\n", sink_->name(), bytes);
   const std::string board =
       greeting_ ? fmt::format("board version {}, {} actuators", greeting_->version, greeting_->actuator_count)
@@ -341,7 +368,7 @@ std::string OpenSink::describe_link(std::uint64_t bytes) const {
 
 std::string doubt_about_off(const SenderStatistics& statistics, const ActuatorSink& sink) {
   if (!statistics.off_sent)
-    return "the frames that switch all actuators off at the end could not be sent; a board that has a time-out "
+    return "the frames that switch all actuators off at the end could not be sent; a receiver that has a time-out "
            "switches them off itself";
   if (!sink.acknowledges() || statistics.off_acknowledged) return "";
   if (statistics.zeros_acknowledged)

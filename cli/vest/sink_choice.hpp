@@ -15,6 +15,7 @@
 #include "transport/wire/vest_frame.hpp"
 
 namespace vestige {
+class BhapticsSink;
 class OscSink;
 class SerialSink;
 class WireFileSink;
@@ -37,7 +38,9 @@ struct SinkChoice {
 
   Quantity quantity() const { return levels == "pressure" ? Quantity::kPressure : Quantity::kDuty; }
   bool is_osc() const { return port.starts_with(kOscPrefix); }
-  bool is_serial() const { return !is_osc() && !is_file() && !is_vmc(); }
+  /// Whether the port is bHaptics' Player.
+  bool is_bhaptics() const { return port.starts_with(kBhapticsPrefix); }
+  bool is_serial() const { return !is_osc() && !is_bhaptics() && !is_file() && !is_vmc(); }
   /// Whether the port takes poses and colliders, not actuator frames: only `stream` sends them.
   bool is_vmc() const { return port.starts_with(kVmcPrefix); }
   bool is_file() const { return port == "-" || port.starts_with(kFilePrefix); }
@@ -47,6 +50,7 @@ struct SinkChoice {
   std::string output_path() const;
 
   static constexpr std::string_view kOscPrefix = "osc:";
+  static constexpr std::string_view kBhapticsPrefix = "bhaptics:";
   static constexpr std::string_view kFilePrefix = "file:";
   static constexpr std::string_view kVmcPrefix = "vmc:";
   static constexpr std::string_view kVmcScheme = "vmc";
@@ -97,10 +101,12 @@ class OpenSink {
  private:
   /// Returns a frame's time on the line, at 10 bits a byte.
   double line_time_s() const;
+  void open_bhaptics(const std::vector<std::string>& actuator_names);
 
   SinkChoice choice_;
   std::unique_ptr<ActuatorSink> sink_;
   OscSink* osc_ = nullptr;
+  BhapticsSink* bhaptics_ = nullptr;
   WireFileSink* file_ = nullptr;
   SerialSink* serial_ = nullptr;
   std::optional<Greeting> greeting_;

@@ -16,7 +16,8 @@ namespace vestige::cli {
 
 namespace {
 
-constexpr std::size_t kDefaultActuators = 6;  // the paper's vest
+constexpr std::size_t kDefaultActuators = 6;    // the paper's vest
+constexpr std::size_t kBhapticsActuators = 40;  // both sides of a vest
 constexpr std::chrono::milliseconds kPause(300);
 constexpr std::chrono::seconds kPatience(3);
 
@@ -87,7 +88,8 @@ Checked run_in_turn(const OpenSink& sink, std::size_t actuators, const CheckOpti
 void run_check(const CheckOptions& options, Invocation& invocation) {
   check_outputs({options.common.json, options.sink.output_path()}, {}, options.common);
   catch_interrupts();
-  std::size_t actuators = options.actuators == 0 ? kDefaultActuators : options.actuators;
+  std::size_t actuators = options.actuators;
+  if (actuators == 0) actuators = options.sink.is_bhaptics() ? kBhapticsActuators : kDefaultActuators;
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= actuators; ++i) names.push_back(std::to_string(i));
   OpenSink sink(options.sink, names, options.common,
@@ -152,7 +154,8 @@ void add_check(CLI::App& vest, Invocation& invocation) {
                             "  vestige vest check --port /dev/ttyUSB0\n"
                             "  vestige vest check --port osc://127.0.0.1:9000 --actuators 2\n");
   add_sink_options(*verb, options->sink);
-  verb->add_option("--actuators", options->actuators, "Number of actuators [default: as the board says, otherwise 6]")
+  verb->add_option("--actuators", options->actuators,
+                   "Number of actuators [default: as the board says; 40 for bhaptics://, otherwise 6]")
       ->check(help::whole_number(1, kMaxActuators))
       ->type_name("N");
   verb->add_option("--level", options->level, "How strongly the actuators run")
