@@ -210,7 +210,7 @@ constexpr Field kLive[] = {
      "SHA-256 of all contacts' frame, collider, triangle, t and actuator; a replay of the recording has the same if "
      "detector, --method, map and --surface give the same contacts; of several vests SHA-256 of theirs"},
     {"duration_s", "s", "from the first frame to the end"},
-    {"missed_deadlines", "", "frames that were not made within 20 ms of their time; only with --rate"},
+    {"missed_deadlines", "", "frames left out since the next one was due already; only with --rate"},
     {"silences", "", "how often no whole frame came for --ttl, so that all actuators were switched off"},
     {"lost/malformed", "", "datagrams or lines that could not be read, or have numbers that are not finite"},
     {"lost/overflowed", "", "datagrams that the system discarded, as they came too fast"},

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+#include <utility>
 
 #include "analysis/base/clocks.hpp"
 
@@ -48,8 +49,8 @@ std::deque<DatagramInput::Source> DatagramInput::sources_of(std::span<const Live
   return sources;
 }
 
-DatagramInput::DatagramInput(std::span<const LivePort> ports, PoseShown poses)
-    : poses_(poses), sources_(sources_of(ports)), scene_(states_of(sources_)) {}
+DatagramInput::DatagramInput(std::span<const LivePort> ports, PoseShown poses, std::chrono::milliseconds ttl)
+    : poses_(poses), ttl_(ttl), sources_(sources_of(ports)), scene_(states_of(sources_)) {}
 
 std::vector<int> DatagramInput::descriptors() const {
   std::vector<int> descriptors;
@@ -93,6 +94,11 @@ void DatagramInput::show(Clock::time_point time, LiveFrame& out) {
   out.begins = false;
   out.pose_delay_s = 0;
   count_superseded();
+  out.is_silent.clear();
+  for (Source& source : sources_) {
+    look_for_silence(source, time);
+    out.is_silent.push_back(source.is_silent);
+  }
   scene_.show(out.frame);
   for (std::size_t i = 0; i < sources_.size(); ++i) lead(sources_[i], out.frame.poses[i], time, out);
   out.decoded = Clock::now();
@@ -109,6 +115,21 @@ void DatagramInput::count_superseded() {
   }
 }
 
+void DatagramInput::look_for_silence(Source& source, Clock::time_point time) {
+  LiveState& state = source.state;
+  const bool was_silent = std::exchange(source.is_silent, sources_.size() > 1 && state.arrived() + ttl_ < time);
+  if (source.is_silent && !was_silent) {
+    state.remove_colliders();
+    problems_.push_back(fmt::format(
+        "{}: no whole frame came for {} ms: this person's actuators are off, and the colliders that came to "
+        "this port are gone, until one comes",
+        source.name, ttl_.count()));
+  }
+  if (state.remove_colliders_silent_since(time - ttl_))
+    problems_.push_back(fmt::format("{}: the program that sends colliders has been silent for {} ms: they are gone",
+                                    source.name, ttl_.count()));
+}
+
 /// Puts the pose of a time in the place of the newest one.
 void DatagramInput::lead(Source& source, Pose& pose, Clock::time_point time, LiveFrame& out) const {
   LiveState& state = source.state;
@@ -118,12 +139,15 @@ void DatagramInput::lead(Source& source, Pose& pose, Clock::time_point time, Liv
     const glm::dvec3 root_m = root_of(source.avatar, pose);
     const bool jumps = begins || source.poses_shown == 0 || since_last > kLongestWay ||
                        !(glm::distance(root_m, source.root_m) <= kFarthestWay_m);
-    const bool is_led_to = poses_ == PoseShown::kInterpolate && state.came_between() && !jumps;
-    source.ramp.lead_to(pose, state.pose_arrived(), is_led_to ? since_last : Clock::duration(0));
+    source.is_led = poses_ == PoseShown::kInterpolate && !jumps && (source.is_led || source.came_between);
+    source.came_between = false;
+    source.ramp.lead_to(pose, state.pose_arrived(), source.is_led ? since_last : Clock::duration(0));
     source.poses_shown = state.poses();
     source.pose_arrived = state.pose_arrived();
     source.root_m = root_m;
     out.begins = out.begins || jumps;
+  } else {
+    source.came_between = true;
   }
   out.begins = out.begins || begins;
   if (source.poses_shown == 0) return;  // the rest pose
@@ -142,7 +166,7 @@ std::vector<RecordingNote> DatagramInput::take_markers() {
 }
 
 std::vector<std::string> DatagramInput::take_problems() {
-  std::vector<std::string> told;
+  std::vector<std::string> told = std::exchange(problems_, {});
   for (Source& source : sources_) {
     const std::vector<std::string>& problems = source.state.vmc().problems();
     for (; source.problems_told < problems.size(); ++source.problems_told)

@@ -4,7 +4,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -30,9 +29,15 @@ LineInput::LineInput(const Avatar& avatar, int descriptor)
     : lines_(avatar), descriptor_(descriptor), buffer_(kReadBytes, '\0') {}
 
 void LineInput::take(TraceFrame frame) {
+  teleported_.insert(frame.teleported.begin(), frame.teleported.end());
+  if (frames_ != frames_shown_) {
+    // Whoever was not in the frame before, which nobody saw, moved no way that leads to this one.
+    std::set<std::uint32_t> before;
+    for (const ColliderSample& collider : newest_.colliders) before.insert(collider.id);
+    for (const ColliderSample& collider : frame.colliders)
+      if (!before.contains(collider.id)) teleported_.insert(collider.id);
+  }
   newest_ = std::move(frame);
-  for (const std::uint32_t id : newest_.teleported)
-    if (std::ranges::find(teleported_, id) == teleported_.end()) teleported_.push_back(id);
   ++frames_;
 }
 
@@ -60,7 +65,8 @@ void LineInput::show(Clock::time_point /*time*/, LiveFrame& out) {
   if (frames_ > frames_shown_) superseded_ += frames_ - frames_shown_ - 1;
   frames_shown_ = frames_;
   out.frame = newest_;
-  out.frame.teleported = std::exchange(teleported_, {});
+  out.frame.teleported.assign(teleported_.begin(), teleported_.end());
+  teleported_.clear();
   out.arrived = arrived_;
   out.begins = false;
   out.pose_delay_s = 0;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@
 namespace vestige {
 
 /// Input by lines of JSON on a descriptor. Each line is a whole frame of one person, with its pose, which is shown as
-/// it is. The time of a frame is that of its line's arrival, whatever `time_s` it says.
+/// it is: whatever a line says, the way from the line before is a motion, unless colliders are `teleported`. The time
+/// of a frame is that of its line's arrival, whatever `time_s` it says.
 class LineInput final : public LiveInput {
  public:
   LineInput(const Avatar& avatar, int descriptor);
@@ -39,7 +41,7 @@ class LineInput final : public LiveInput {
   Clock::time_point arrived_;
   std::string buffer_;
   TraceFrame newest_;
-  std::vector<std::uint32_t> teleported_;  ///< not shown yet
+  std::set<std::uint32_t> teleported_;  ///< not shown yet
   std::uint64_t frames_ = 0;
   std::uint64_t frames_shown_ = 0;
   std::uint64_t superseded_ = 0;

@@ -21,6 +21,8 @@ struct LiveFrame {
   Clock::time_point decoded;  ///< when it could be shown
   double pose_delay_s = 0;    ///< how late it shows the newest pose, by `PoseShown::kInterpolate`
   bool begins = false;        ///< no motion leads to it from the frame before, of poses or colliders
+  /// By person: whether only others go on, so that this person's pose is an old one. Empty: nobody's.
+  std::vector<bool> is_silent;
 };
 
 /// What was left out, in datagrams or lines.

@@ -19,9 +19,10 @@ using Clock = LiveFrame::Clock;
 
 /// The longest time between two calls of `go_on`.
 constexpr std::chrono::nanoseconds kLongestWait = 20ms;
-/// A frame of a rate that is later is not made.
-constexpr double kMostLate_s = 0.02;
-constexpr const char* kInput = "input";  // traces/FORMAT.md
+/// What was on stays on for so long until the next frame, as in a trace (`FrameCalls`).
+constexpr std::chrono::milliseconds kLongestStay = 200ms;
+constexpr std::size_t kMostMarkers = 1000;  ///< that wait for a frame
+constexpr const char* kInput = "input";     // traces/FORMAT.md
 
 std::int64_t nanoseconds(Clock::duration duration) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
@@ -31,6 +32,7 @@ class LiveRun {
  public:
   LiveRun(LiveInput& input, std::span<const DetectedPerson> people, const LiveOptions& options, const LiveCalls& calls)
       : input_(input),
+        people_(people),
         options_(options),
         calls_(calls),
         felt_(people, columns_.columns(), calls),
@@ -44,6 +46,7 @@ class LiveRun {
     while (calls_.go_on() && !input_.has_ended() && !is_over()) {
       wait();
       input_.receive();
+      take_markers();
       if (const auto due = next_frame()) {
         take(*due);
       } else {
@@ -85,12 +88,12 @@ class LiveRun {
     return tick_time(tick_);
   }
 
+  /// Of several frames that are due, only the newest is made.
   void skip_missed() {
-    const double late_s = seconds(Clock::now() - start_) - kMostLate_s;
-    const auto first = static_cast<std::uint64_t>(std::max(0.0, std::ceil(late_s * *options_.rate_hz)));
-    if (first <= tick_) return;
-    result_.missed_deadlines += first - tick_;
-    tick_ = first;
+    const auto newest = static_cast<std::uint64_t>(std::max(0.0, seconds(Clock::now() - start_) * *options_.rate_hz));
+    if (newest <= tick_) return;
+    result_.missed_deadlines += newest - tick_;
+    tick_ = newest;
   }
 
   void take(Clock::time_point time) {
@@ -110,9 +113,12 @@ class LiveRun {
       for (const ColliderSample& collider : frame.colliders) frame.teleported.push_back(collider.id);
     }
     const Clock::time_point since = is_new ? live_.arrived : time;
+    for (std::size_t i = 0; i < people_.size() && !live_.is_silent.empty(); ++i)
+      felt_.mute(i, live_.is_silent[people_[i].person]);
     detect(frame, since);
     tell_moments(since, begins);
-    if (calls_.record) calls_.record(frame, take_notes());
+    std::vector<RecordingNote> notes = take_notes();
+    if (calls_.record) calls_.record(frame, std::move(notes));
     if (was_silent) calls_.tell("input comes again");
   }
 
@@ -123,7 +129,6 @@ class LiveRun {
       return false;
     }
     if (!has_begun_) start_ = time;
-    if (is_silent_) felt_.forget_contacts();  // whose time may be a little later than this frame's
     has_begun_ = true;
     is_silent_ = false;
     if (options_.rate_hz)
@@ -134,12 +139,12 @@ class LiveRun {
   void detect(const TraceFrame& frame, Clock::time_point since) {
     std::swap(numbered_, numbered_before_);
     if (columns_.number(frame, numbered_)) felt_.use_ids(columns_.columns(), numbered_before_);
-    felt_.take(numbered_, numbered_.time_s(), since);
+    felt_.take(numbered_, law_time_s(numbered_.time_s()), since);
     for (std::size_t i = 0; i < hashes_.size(); ++i) hashes_[i].add(frame.index, felt_.row(i), columns_.ids());
   }
 
   void tell_moments(Clock::time_point since, bool begins) {
-    const Clock::time_point now = Clock::now();
+    const Clock::time_point now = felt_.detected();
     LiveMoments moments = {.arrived = since,
                            .decoded = live_.decoded,
                            .detected = now,
@@ -150,8 +155,19 @@ class LiveRun {
     calls_.note(moments);
   }
 
+  /// Returns the time for a law, which never goes back: a frame may have arrived a little before the laws went on
+  /// without it.
+  double law_time_s(double time_s) { return law_time_s_ = std::max(law_time_s_, time_s); }
+
+  /// Beyond the most that wait, the input counts markers as malformed.
+  void take_markers() {
+    if (markers_.size() >= kMostMarkers) return;
+    for (RecordingNote& marker : input_.take_markers())
+      if (calls_.record) markers_.push_back(std::move(marker));
+  }
+
   std::vector<RecordingNote> take_notes() {
-    std::vector<RecordingNote> notes = input_.take_markers();
+    std::vector<RecordingNote> notes = std::exchange(markers_, {});
     const auto note = [&notes](RecordingNote::Kind kind, std::uint64_t count, const char* text) {
       if (count > 0) notes.push_back({.kind = kind, .count = count, .text = text});
     };
@@ -164,10 +180,14 @@ class LiveRun {
 
   void look_for_silence() {
     const Clock::time_point now = Clock::now();
-    if (!has_begun_ || now < input_.arrived() + options_.ttl) return;
+    if (!has_begun_) return;
+    if (now < input_.arrived() + options_.ttl) {
+      if (now >= input_.arrived() + kLongestStay) felt_.gap(law_time_s(seconds(now - start_)), now);
+      return;
+    }
     const bool was_silent = std::exchange(is_silent_, true);
     if (!was_silent) felt_.forget_contacts();
-    felt_.gap(seconds(now - start_), now);
+    felt_.gap(law_time_s(seconds(now - start_)), now);
     if (was_silent) return;
     ++result_.silences;
     calls_.tell(
@@ -178,12 +198,14 @@ class LiveRun {
     if (has_begun_) result_.duration_s = seconds(Clock::now() - start_);
     result_.colliders = columns_.seen();
     result_.losses = input_.losses();
+    result_.notes = take_notes();
     result_.people = felt_.finish();
     for (ContactsHash& hash : hashes_) result_.contacts_hashes.push_back(hash.hex());
     return std::move(result_);
   }
 
   LiveInput& input_;
+  std::span<const DetectedPerson> people_;
   const LiveOptions& options_;
   const LiveCalls& calls_;
   LiveColumns columns_;
@@ -197,6 +219,8 @@ class LiveRun {
   std::uint64_t tick_ = 0;  ///< of the next frame, with a rate
   std::uint64_t frames_seen_ = 0;
   std::int64_t last_ns_ = 0;
+  double law_time_s_ = 0;
+  std::vector<RecordingNote> markers_;  ///< that wait for a frame
   std::uint64_t lost_noted_ = 0;
   std::uint64_t superseded_noted_ = 0;
   LiveFrame live_;

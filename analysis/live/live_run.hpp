@@ -50,11 +50,12 @@ struct LiveCalls : FeltCalls {
 struct LiveResult {
   std::uint64_t frames = 0;            ///< detected
   std::uint64_t superseded = 0;        ///< `LiveInput::superseded`; 0 with a rate
-  std::uint64_t missed_deadlines = 0;  ///< frames that were not made within 20 ms of their time; only with a rate
+  std::uint64_t missed_deadlines = 0;  ///< frames left out since the next one was due already; only with a rate
   std::uint64_t silences = 0;          ///< how often no whole frame came for `LiveOptions::ttl`
   std::uint64_t colliders = 0;         ///< `LiveColumns::seen`
   double duration_s = 0;               ///< from the first frame to the end
   LiveLosses losses;
+  std::vector<RecordingNote> notes;          ///< for the recording, that came or were counted since the last frame
   std::vector<FeltPerson> people;            ///< in the order in which they were given
   std::vector<std::string> contacts_hashes;  ///< of each of them, by `ContactsHash`
 };
@@ -68,7 +69,10 @@ struct LiveResult {
 /// - A frame's time is when it had arrived, since the first one.
 /// - Nothing moves in a frame that no motion leads to (`LiveFrame::begins`), and in the first one after silence: all of
 ///   its colliders are teleported. So it tests nothing, and neither does its recording.
-/// - In silence, the laws are made anew, so that nothing stays on by a law's hold, and go on without contacts.
+/// - If no frame comes for 0.2 s, laws go on without contacts, as in a gap of a trace.
+/// - In silence, the laws are made anew, so that nothing stays on by a law's hold, and go on without contacts. So is
+/// the
+///   law of a person who alone is silent (`LiveFrame::is_silent`).
 LiveResult run_live(LiveInput& input, std::span<const DetectedPerson> people, const LiveOptions& options,
                     const LiveCalls& calls);
 

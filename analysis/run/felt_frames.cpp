@@ -6,7 +6,12 @@ namespace vestige {
 
 FeltFrames::FeltFrames(std::span<const DetectedPerson> people, std::span<const std::uint32_t> ids,
                        const FeltCalls& calls)
-    : people_(people), ids_(ids), calls_(calls), nothing_(ids.size()), found_(people.size()) {}
+    : people_(people),
+      ids_(ids),
+      calls_(calls),
+      nothing_(ids.size()),
+      found_(people.size()),
+      is_muted_(people.size()) {}
 
 void FeltFrames::begin_run() {
   count_faults();
@@ -24,14 +29,24 @@ void FeltFrames::use_ids(std::span<const std::uint32_t> ids, const TraceFrame& b
   detection_->use_ids(ids, before);
 }
 
+void FeltFrames::mute(std::size_t person, bool is_muted) {
+  if (is_muted_[person] == is_muted) return;
+  is_muted_[person] = is_muted;
+  laws_[person] = std::move(calls_.make_laws()[person]);
+}
+
 void FeltFrames::gap(double time_s, Clock::time_point now) {
   for (std::size_t i = 0; i < laws_.size(); ++i) calls_.take(i, laws_[i](time_s, nothing_, nullptr), now);
 }
 
 void FeltFrames::take(const TraceFrame& frame, double time_s, Clock::time_point due) {
   detection_->step(frame);
-  for (std::size_t i = 0; i < laws_.size(); ++i)
-    calls_.take(i, laws_[i](time_s, detection_->row(i), &detection_->frame(i)), due);
+  detected_ = Clock::now();
+  for (std::size_t i = 0; i < laws_.size(); ++i) {
+    const ActuatorFrame& felt = is_muted_[i] ? laws_[i](time_s, nothing_, nullptr)
+                                             : laws_[i](time_s, detection_->row(i), &detection_->frame(i));
+    calls_.take(i, felt, due);
+  }
   for (std::size_t i = 0; i < found_.size(); ++i) found_[i].contacts += detection_->row(i).hits();
 }
 

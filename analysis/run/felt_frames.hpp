@@ -53,10 +53,15 @@ class FeltFrames {
   /// As `DetectionRun::use_ids`. Keeps a reference to `ids`.
   void use_ids(std::span<const std::uint32_t> ids, const TraceFrame& before);
 
+  /// Whether a person feels nothing for now, whatever touches them. Their law is made anew.
+  void mute(std::size_t person, bool is_muted);
+
   /// The laws go on, without contacts.
   void gap(double time_s, Clock::time_point now);
   /// Detects in a frame, and tells what is felt.
   void take(const TraceFrame& frame, double time_s, Clock::time_point due);
+  /// When the contacts of the frame taken last had been found.
+  Clock::time_point detected() const { return detected_; }
   /// The contacts of the frame taken last.
   const ContactRow& row(std::size_t person) const { return detection_->row(person); }
 
@@ -73,6 +78,8 @@ class FeltFrames {
   std::vector<FeltPerson> found_;
   std::optional<DetectionRun> detection_;
   std::vector<FeltCalls::Law> laws_;
+  std::vector<bool> is_muted_;
+  Clock::time_point detected_;
 };
 
 }  // namespace vestige

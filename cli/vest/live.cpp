@@ -144,7 +144,7 @@ std::unique_ptr<LiveInput> open_input(const LivePlan& plan, const LiveVerbOption
   ports.reserve(people.size());
   for (std::size_t i = 0; i < people.size(); ++i)
     ports.push_back({plan.sources[i], place_of(plan.sources[i]), people[i].avatar});
-  return std::make_unique<DatagramInput>(ports, options.pose_shown());
+  return std::make_unique<DatagramInput>(ports, options.pose_shown(), std::chrono::milliseconds(options.sink.ttl_ms));
 }
 
 std::unique_ptr<LiveRecorder> open_recorder(const LivePlan& plan, const LiveVerbOptions& options,
@@ -240,7 +240,7 @@ void run_live_verb(const CLI::App& verb, LiveVerbOptions& options, Invocation& i
   feel(*input, session, recorder.get());
   finish(wearers);
   require_frame(session, plan);
-  if (recorder) recorder->finish();
+  if (recorder) recorder->finish(session.result.notes);
   session.recorder = recorder.get();
   print_summary(summary(session), plan.outputs, options.common);
   write_json(options.common.json, to_json(session, invocation), options.common);

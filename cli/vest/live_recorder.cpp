@@ -43,17 +43,21 @@ void LiveRecorder::take(const TraceFrame& frame, std::vector<RecordingNote> note
       return;
     }
     for (RecordingNote& note : notes) add(std::move(note));
-    std::vector<RecordingNote> all = notes_;
-    if (const std::uint64_t lost = left_out_ - left_out_noted_; lost > 0)
-      for (const char* topic : {"/pose", "/colliders"})
-        all.push_back({.kind = RecordingNote::Kind::kDropped, .count = lost, .text = topic});
-    if (thread_->put(frame, std::move(all), RecordingThread::WhenBehind::kDrop)) {
+    if (thread_->put(frame, waiting(), RecordingThread::WhenBehind::kDrop)) {
       notes_.clear();
       left_out_noted_ = left_out_;
       return;
     }
     if (left_out_++ == 0) tell_(fmt::format("{}: the disk does not keep up; frames are left out", path_.string()));
   });
+}
+
+std::vector<RecordingNote> LiveRecorder::waiting() const {
+  std::vector<RecordingNote> all = notes_;
+  if (const std::uint64_t lost = left_out_ - left_out_noted_; lost > 0)
+    for (const char* topic : {"/pose", "/colliders"})
+      all.push_back({.kind = RecordingNote::Kind::kDropped, .count = lost, .text = topic});
+  return all;
 }
 
 /// Counts of one topic are added up, so that a disk that does not keep up costs no memory.
@@ -72,8 +76,10 @@ void LiveRecorder::snapshot() {
   attempt([&] { thread_->snapshot(); });
 }
 
-void LiveRecorder::finish() {
+void LiveRecorder::finish(std::vector<RecordingNote> notes) {
   attempt([&] {
+    for (RecordingNote& note : notes) add(std::move(note));
+    if (!is_full_) thread_->put(waiting());
     thread_->stop();
     is_full_ = recorder_->is_full();
     recorder_->finish();

@@ -25,8 +25,8 @@ class LiveRecorder {
   void take(const TraceFrame& frame, std::vector<RecordingNote> notes);
   /// As `Recorder::snapshot`.
   void snapshot();
-  /// Writes what is left. Does nothing if the recording has ended before.
-  void finish();
+  /// Writes what is left, and notes that came after the last frame. Does nothing if the recording has ended before.
+  void finish(std::vector<RecordingNote> notes);
 
   /// Whether every frame is in the recording.
   bool is_complete() const { return !failed_ && !is_full_ && left_out_ == 0; }
@@ -38,6 +38,8 @@ class LiveRecorder {
   template <typename Work>
   void attempt(const Work& work);
   void add(RecordingNote note);
+  /// Returns the notes that wait, and those of frames left out.
+  std::vector<RecordingNote> waiting() const;
 
   std::filesystem::path path_;
   std::function<void(const std::string&)> tell_;

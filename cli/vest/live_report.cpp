@@ -117,7 +117,7 @@ nlohmann::ordered_json to_json(const LiveSession& session, const Invocation& inv
   json["real_time"] = real_time_json(session.real_time);
   json["recording"] = nullptr;
   if (session.recorder != nullptr) json["recording"] = session.recorder->to_json();
-  json["complete"] = total.links_lost == 0 && result.losses.total() == 0;
+  json["complete"] = total.links_lost == 0 && result.losses.total() == 0 && !result.losses.ids_clash;
   json["link"] = link_of(first);
   json["avatars"] = avatars_of(session);
   return json;

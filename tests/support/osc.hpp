@@ -57,6 +57,12 @@ inline std::vector<std::byte> with_id(const char* address, std::int32_t id) {
   return bytes_of(address, message);
 }
 
+inline std::vector<std::byte> marker(const char* text) {
+  OscBuilder message(lo_message_new());
+  lo_message_add_string(message.get(), text);
+  return bytes_of("/vestige/marker", message);
+}
+
 inline std::vector<std::byte> bundle(const std::vector<std::vector<std::byte>>& elements) {
   std::vector<std::byte> bytes;
   const std::string_view head("#bundle\0\0\0\0\0\0\0\0\1", 16);

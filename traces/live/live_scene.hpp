@@ -12,7 +12,8 @@
 namespace vestige {
 
 /// Joins what several sources send, one for each person, to frames of one scene. An id of a collider belongs to the
-/// source that sent it first; colliders and teleports of others with this id are left out.
+/// source that sent it first, as long as its frames have it; colliders and teleports of others with this id are left
+/// out.
 class LiveScene {
  public:
   /// The sources must outlive the scene.
@@ -25,9 +26,12 @@ class LiveScene {
   bool ids_clash() const { return ids_clash_; }
 
  private:
+  /// Finds out of `shown_` whose each collider is.
+  void find_owners();
+
   std::vector<LiveState*> sources_;
   std::unordered_map<std::uint32_t, std::size_t> source_of_;  ///< of each collider's id: who sent it first
-  TraceFrame shown_;
+  std::vector<TraceFrame> shown_;                             ///< of each source
   bool ids_clash_ = false;
 };
 

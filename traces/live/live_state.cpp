@@ -19,26 +19,41 @@ LiveState::LiveState(const Avatar& avatar, const glm::dvec3& origin_m, const Sta
   state_.show(kept_);
 }
 
-bool LiveState::Speaker::admits(const Datagram& datagram, bool says_something) {
-  if (address && datagram.arrived - heard > kSilence) address.reset();
-  if (address && *address != datagram.sender) return false;
-  if (!says_something) return true;
+bool LiveState::Speaker::admits(const Datagram& datagram) const {
+  return !address || *address == datagram.sender || datagram.arrived - heard > kSilence;
+}
+
+void LiveState::Speaker::hear(const Datagram& datagram) {
   address = datagram.sender;
   heard = datagram.arrived;
-  return true;
 }
 
 bool LiveState::admits(const VmcContent& content, const Datagram& datagram) {
   if (senders_ == Senders::kAny) return true;
-  // Whoever says that there is no frame yet may only be asking whether somebody listens.
-  const bool tells_pose = content.pose || content.tells_end;
-  const bool admitted = (!tells_pose || of_pose_.admits(datagram, content.pose || content.ends)) &&
-                        (!content.vestige || of_colliders_.admits(datagram, true));
-  if (!admitted) {
+  const bool tells_pose = content.pose || content.ends;
+  if ((tells_pose && !of_pose_.admits(datagram)) || (content.colliders && !of_colliders_.admits(datagram))) {
     ++left_out_;
     if (!stranger_) stranger_ = datagram.sender;
+    return false;
   }
-  return admitted;
+  if (tells_pose) {
+    if (of_pose_.address && *of_pose_.address != datagram.sender) tells_end_ = false;
+    of_pose_.hear(datagram);
+  }
+  if (content.colliders) of_colliders_.hear(datagram);
+  return true;
+}
+
+bool LiveState::remove_colliders_silent_since(Clock::time_point time) {
+  if (!of_colliders_.address || of_colliders_.address == of_pose_.address || of_colliders_.heard > time) return false;
+  remove_colliders();
+  return true;
+}
+
+void LiveState::remove_colliders() {
+  of_colliders_.address.reset();
+  state_.remove_colliders();
+  kept_.colliders.clear();
 }
 
 bool LiveState::completes(const VmcContent& content) const {
@@ -61,7 +76,7 @@ bool LiveState::take(const Datagram& datagram) {
   const bool changed = state_.take(datagram.bytes, [&](const VmcContent& content) {
     if (!admits(content, datagram)) return false;
     if (is_told_in_part_ && datagram.arrived - part_told_ > kLongestPause) note_whole(part_told_);
-    if (content.tells_end && !std::exchange(tells_end_, true)) begins_ = true;
+    if (content.ends && !std::exchange(tells_end_, true)) begins_ = true;
     ends = content.ends;
     whole = completes(content);
     if (!whole) begin_part(content, datagram.arrived);
@@ -78,9 +93,7 @@ void LiveState::note_whole(Clock::time_point arrived) {
   arrived_ = std::max(arrived_, arrived);
   if (!std::exchange(has_new_pose_, false)) return;
   ++poses_;
-  pose_arrived_ = arrived;
-  came_between_ = frames_ - frames_at_pose_ > 1;
-  frames_at_pose_ = frames_;
+  pose_arrived_ = std::max(pose_arrived_, arrived);
   if (poses_ == 1) begins_ = true;
 }
 
@@ -91,15 +104,15 @@ void LiveState::show(TraceFrame& frame) {
     frame.teleported.clear();
   } else {
     state_.show(frame);
+    state_.forget_removed();
   }
-  const std::vector<std::uint32_t> shown_now = std::exchange(frame.teleported, std::exchange(teleported_, {}));
-  for (const std::uint32_t id : shown_now)
-    if (std::ranges::find(frame.teleported, id) == frame.teleported.end()) frame.teleported.push_back(id);
+  teleported_.insert(frame.teleported.begin(), frame.teleported.end());
+  frame.teleported.assign(teleported_.begin(), teleported_.end());
+  teleported_.clear();
 }
 
 void LiveState::mark_teleported(std::span<const std::uint32_t> ids) {
-  for (const std::uint32_t id : ids)
-    if (std::ranges::find(teleported_, id) == teleported_.end()) teleported_.push_back(id);
+  teleported_.insert(ids.begin(), ids.end());
 }
 
 bool LiveState::take_beginning() {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <set>
 #include <span>
-#include <vector>
 
 #include "traces/live/udp_receiver.hpp"
 #include "traces/live/vmc_state.hpp"
@@ -19,9 +19,9 @@ namespace vestige {
 /// What a VR program sends (`VmcState`), as whole frames: a frame that was told in part is not shown.
 ///
 /// A datagram that ends a frame (/VMC/Ext/OK) makes all whole that came before. So does a datagram without a message of
-/// the pose, unless a pose was begun and has not ended: colliders may come faster than poses. If a sender never says
-/// where its frames end, each of its datagrams is whole. If a pose was begun and no more of it came for 10 ms, the next
-/// datagram ends it: its end was lost, or the sender does not tell each end.
+/// the pose, unless a pose was begun and has not ended: colliders may come faster than poses. As long as the sender of
+/// the pose has not said where a frame ends, each datagram is whole. If a pose was begun and no more of it came for 10
+/// ms, the next datagram ends it: its end was lost, or the sender does not tell each end.
 class LiveState {
  public:
   using Clock = Datagram::Clock;
@@ -47,8 +47,11 @@ class LiveState {
   Clock::time_point arrived() const { return arrived_; }            ///< when the newest one had arrived
   std::uint64_t poses() const { return poses_; }                    ///< whole frames so far that told the pose
   Clock::time_point pose_arrived() const { return pose_arrived_; }  ///< when the newest of these had arrived
-  /// Whether whole frames without a pose came between the newest pose and the one before.
-  bool came_between() const { return came_between_; }
+  /// If colliders come from another program than poses, and that one has been silent since `time`, its colliders are
+  /// gone. Returns whether they were taken away now.
+  bool remove_colliders_silent_since(Clock::time_point time);
+  /// All colliders are gone.
+  void remove_colliders();
   /// Returns once whether no motion leads to the newest frame: it is the first one with a pose, or the first one that
   /// is known to be whole.
   bool take_beginning();
@@ -66,8 +69,9 @@ class LiveState {
     std::optional<UdpAddress> address;
     Clock::time_point heard;
 
-    /// Whether a datagram is of whoever is heard. If nobody is, its sender is from now on, if it says something.
-    bool admits(const Datagram& datagram, bool says_something);
+    /// Whether a datagram is of whoever is heard, or nobody is.
+    bool admits(const Datagram& datagram) const;
+    void hear(const Datagram& datagram);
   };
 
   bool admits(const VmcContent& content, const Datagram& datagram);
@@ -87,13 +91,11 @@ class LiveState {
   bool begins_ = false;           ///< for `take_beginning`
   Clock::time_point part_told_;   ///< when the newest datagram with a pose came, while something is told in part
   TraceFrame kept_;
-  std::vector<std::uint32_t> teleported_;  ///< of whole frames, not shown yet
+  std::set<std::uint32_t> teleported_;  ///< of whole frames, not shown yet
   std::uint64_t frames_ = 0;
   Clock::time_point arrived_;
   std::uint64_t poses_ = 0;
   Clock::time_point pose_arrived_;
-  std::uint64_t frames_at_pose_ = 0;
-  bool came_between_ = false;
   std::uint64_t left_out_ = 0;
   std::optional<UdpAddress> stranger_;
 };

@@ -32,7 +32,8 @@ Datagram::Clock::time_point steady_time(const timespec& stamp) {
   timespec now = {};
   ::clock_gettime(CLOCK_REALTIME, &now);
   const std::chrono::nanoseconds waited = since_1970(now) - since_1970(stamp);
-  return Datagram::Clock::now() - std::clamp<std::chrono::nanoseconds>(waited, std::chrono::seconds(0), kLongestQueued);
+  const bool is_credible = waited > std::chrono::seconds(0) && waited < kLongestQueued;
+  return Datagram::Clock::now() - (is_credible ? waited : std::chrono::seconds(0));
 }
 
 }  // namespace

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <glm/mat4x4.hpp>
-#include <utility>
 
 #include "traces/mcap/decode.hpp"
 #include "traces/scene/radius.hpp"
@@ -90,7 +88,6 @@ VmcContent VmcState::check(std::span<const OscMessage> messages) const {
       placement_of(message);
       content.pose = true;
     } else if (message.address == "/VMC/Ext/OK") {
-      content.tells_end = true;
       content.ends = content.ends || is_ready(message);
     } else if (message.address == "/vestige/collider") {
       id(message);
@@ -98,14 +95,13 @@ VmcContent VmcState::check(std::span<const OscMessage> messages) const {
       radius(message);
       if (!colliders_.contains(id(message)) && ++colliders > kMostColliders)
         throw Malformed("there are already a million colliders");
-      content.vestige = true;
+      content.colliders = true;
     } else if (message.address == "/vestige/collider/remove" || message.address == "/vestige/teleport") {
       id(message);
-      content.vestige = true;
+      content.colliders = true;
     } else if (message.address == "/vestige/marker") {
       text(message);
       if (++markers > kMostMarkers) throw Malformed("there are already a thousand markers since the last frame");
-      content.vestige = true;
     }
   }
   return content;
@@ -147,13 +143,16 @@ bool VmcState::apply(const OscMessage& message) {
   if (message.address == "/vestige/collider") {
     const glm::dvec3 given(number(message, 1), number(message, 2), number(message, 3));
     colliders_[id(message)] = {id(message), origin_m_ + stance_.position_m + stance_.turned(given), radius(message)};
+    if (removed_.erase(id(message)) > 0) teleported_.insert(id(message));
     return true;
   }
-  if (message.address == "/vestige/collider/remove") return colliders_.erase(id(message)) > 0;
+  if (message.address == "/vestige/collider/remove") {
+    const bool was_there = colliders_.erase(id(message)) > 0;
+    if (was_there) removed_.insert(id(message));
+    return was_there;
+  }
   if (message.address == "/vestige/teleport") {
-    if (std::find(teleported_.begin(), teleported_.end(), id(message)) == teleported_.end() &&
-        colliders_.contains(id(message)))
-      teleported_.push_back(id(message));
+    if (colliders_.contains(id(message))) teleported_.insert(id(message));
     return true;
   }
   if (message.address == "/vestige/marker")
@@ -185,7 +184,13 @@ void VmcState::show(TraceFrame& frame) {
   move_to(stance_, avatar_, frame.poses.front());
   frame.colliders.clear();
   for (const auto& [id, collider] : colliders_) frame.colliders.push_back(collider);
-  frame.teleported = std::exchange(teleported_, {});
+  frame.teleported.assign(teleported_.begin(), teleported_.end());
+  teleported_.clear();
+}
+
+void VmcState::remove_colliders() {
+  for (const auto& [id, collider] : colliders_) removed_.insert(id);
+  colliders_.clear();
 }
 
 }  // namespace vestige

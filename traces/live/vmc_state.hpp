@@ -22,8 +22,7 @@ namespace vestige {
 /// What the messages of a datagram are about.
 struct VmcContent {
   bool pose = false;       ///< of a bone or the root
-  bool vestige = false;    ///< of a collider, a teleport or a marker
-  bool tells_end = false;  ///< /VMC/Ext/OK, with any value: the sender says where its frames end
+  bool colliders = false;  ///< where they are, that they are gone, or that they jumped
   bool ends = false;       ///< /VMC/Ext/OK, unless it says 0: a frame ends with this datagram
 };
 
@@ -58,8 +57,12 @@ class VmcState {
   bool take(std::span<const std::byte> datagram, const Admit& admit = {});
 
   /// Returns in `frame` the state, with one pose and by ascending ids, without number and time. Reports each teleport
-  /// once.
+  /// once. A collider that is removed and comes back has jumped, until `forget_removed`.
   void show(TraceFrame& frame);
+  /// To be called when a frame without the removed colliders was shown.
+  void forget_removed() { removed_.clear(); }
+  /// All colliders are gone.
+  void remove_colliders();
   /// The markers since `forget_markers`; 1000 at most, further ones count as malformed.
   const std::vector<RecordingNote>& markers() const { return markers_; }
   void forget_markers() { markers_.clear(); }
@@ -86,7 +89,8 @@ class VmcState {
   NodeLocal top_local_;  ///< transform of the skeleton's top without the root
   VmcPlacement root_;
   std::map<std::uint32_t, ColliderSample> colliders_;
-  std::vector<std::uint32_t> teleported_;
+  std::set<std::uint32_t> removed_;  ///< ids
+  std::set<std::uint32_t> teleported_;
   std::vector<RecordingNote> markers_;
   std::set<std::string> bones_;
   std::set<std::string> unknown_bones_;

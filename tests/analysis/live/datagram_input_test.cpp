@@ -41,7 +41,7 @@ class ByDatagrams : public ::testing::Test {
   void open(PoseShown poses) {
     input_.reset();
     const std::vector<LivePort> ports = {{"vmc://port", {"127.0.0.1", port_}, avatar_}};
-    input_ = std::make_unique<DatagramInput>(ports, poses);
+    input_ = std::make_unique<DatagramInput>(ports, poses, 100ms);
   }
 
   /// Sends datagrams, and lets the input take all of them at once.
@@ -99,6 +99,44 @@ TEST_F(ByDatagrams, APoseBetweenWhichCollidersCameIsLedToWithoutAJump) {
   EXPECT_NEAR(x_at(input_->arrived() + 2 * way), 0.2, 1e-6);
   EXPECT_EQ(live_.pose_delay_s, 0);
   EXPECT_FALSE(live_.begins);
+  take({pose_at(0.3)});
+  EXPECT_LT(x_now(), 0.25);
+  take({pose_at(0.4)});
+  EXPECT_LT(x_now(), 0.35) << "no collider came in between now, but one may come again";
+  EXPECT_GT(live_.pose_delay_s, 0);
+}
+
+TEST_F(ByDatagrams, AFrameAtATimeOfItsOwnSeesNoJumpEither) {
+  take({pose_at(0.1)});
+  x_now();
+  x_at(input_->arrived() + 5ms);  // with a rate, or for another person
+  take({pose_at(0.2)});
+  EXPECT_NEAR(x_now(), 0.1, 1e-6);
+}
+
+TEST_F(ByDatagrams, OfTwoPeopleOneMayFallSilent) {
+  const std::uint16_t other_port = test::free_udp_port();
+  const std::vector<LivePort> ports = {{"vmc://one", {"127.0.0.1", other_port}, avatar_},
+                                       {"vmc://two", {"127.0.0.1", port_}, avatar_}};
+  input_.reset();  // which has the port
+  input_ = std::make_unique<DatagramInput>(ports, PoseShown::kLatest, 500ms);
+  const test::UdpSender other(other_port);
+  other.send(bundle({pose_at(0.1), collider(1, 0, 0, 0)}));
+  take({collider(2, 0, 0, 0)});
+  x_now();
+  EXPECT_EQ(live_.is_silent, std::vector<bool>({false, false}));
+  EXPECT_EQ(live_.frame.colliders.size(), 2U);
+  std::this_thread::sleep_for(600ms);
+  take({collider(2, 0, 0, 1)});
+  x_now();
+  EXPECT_EQ(live_.is_silent, std::vector<bool>({true, false}));
+  ASSERT_EQ(live_.frame.colliders.size(), 1U) << "what the silent one sent is gone";
+  EXPECT_EQ(live_.frame.colliders[0].id, 2U);
+  EXPECT_THAT(input_->take_problems(), ::testing::ElementsAre(HasSubstr("vmc://one: no whole frame came for 500 ms")));
+  other.send(pose_at(0.1));
+  take({});
+  x_now();
+  EXPECT_EQ(live_.is_silent, std::vector<bool>({false, false}));
 }
 
 TEST_F(ByDatagrams, APoseAfterAPoseAndTheLatestOnDemandAreShownAtOnce) {
@@ -148,7 +186,7 @@ TEST_F(ByDatagrams, FaultsAreToldOnceAndCounted) {
 
 TEST_F(ByDatagrams, ATakenPortIsAnError) {
   const std::vector<LivePort> ports = {{"vmc://port", {"127.0.0.1", port_}, avatar_}};
-  EXPECT_THROW(DatagramInput(ports, PoseShown::kLatest), Error);
+  EXPECT_THROW(DatagramInput(ports, PoseShown::kLatest, 100ms), Error);
 }
 
 }  // namespace

@@ -79,7 +79,9 @@ class ScriptedInput : public LiveInput {
     out.begins = now_.begins;
   }
   std::uint64_t superseded() const override { return 3; }
-  std::vector<RecordingNote> take_markers() override { return {}; }
+  std::vector<RecordingNote> take_markers() override {
+    return {{.kind = RecordingNote::Kind::kMarker, .text = steps_.empty() ? "last" : "here"}};
+  }
   std::vector<std::string> take_problems() override { return {}; }
   LiveLosses losses() const override { return {}; }
 
@@ -142,9 +144,12 @@ TEST_F(LiveRunTest, EachWholeFrameIsDetectedAndRecordedAtTheTimeWhenItArrived) {
   EXPECT_EQ(recorded_[2].time_ns, 7'000'000);
   EXPECT_EQ(recorded_[2].colliders[1].id, 3U) << "its own id, not that of a column";
   EXPECT_THAT(intervals_, ElementsAre(0, 1, 1, 1));
-  ASSERT_EQ(notes_.size(), 1U) << "what was superseded is noted once";
-  EXPECT_EQ(notes_[0].kind, RecordingNote::Kind::kSuperseded);
-  EXPECT_EQ(notes_[0].count, 3U);
+  const auto superseded = [](const RecordingNote& note) { return note.kind == RecordingNote::Kind::kSuperseded; };
+  EXPECT_EQ(std::ranges::count_if(notes_, superseded), 1) << "noted once";
+  EXPECT_EQ(std::ranges::find_if(notes_, superseded)->count, 3U);
+  EXPECT_EQ(std::ranges::count(notes_, "here", &RecordingNote::text), 3);
+  ASSERT_FALSE(result.notes.empty()) << "what came after the last frame is not lost";
+  EXPECT_EQ(result.notes.front().text, "last");
 }
 
 TEST_F(LiveRunTest, TheHashIsThatOfTheContactsByIdsInTheirOrder) {
@@ -215,7 +220,7 @@ TEST_F(LiveRunTest, SilenceSwitchesOffWhateverTheHoldAndNothingLeadsOutOfIt) {
 
 TEST_F(LiveRunTest, WithARateFramesAreMadeAtTheirTimes) {
   const LiveResult result =
-      run({{.ids = {1}}, {.ids = {1}}, {.ids = {1}, .waits_for_off = true}}, {.rate_hz = 100, .ttl = 100ms});
+      run({{.ids = {1}}, {.ids = {1}}, {.ids = {1}, .waits_for_off = true}}, {.rate_hz = 100, .ttl = 1s});
   EXPECT_EQ(result.silences, 1U);
   EXPECT_EQ(result.superseded, 0U) << "what is between two frames is left out by intent";
   ASSERT_GE(recorded_.size(), 3U);

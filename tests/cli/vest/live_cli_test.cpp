@@ -230,7 +230,7 @@ std::vector<std::byte> hostile(std::mt19937& random) {
 
 TEST_F(Live, HostileDatagramsMoveNoMotor) {
   const int count = std::getenv("VESTIGE_LONG") != nullptr ? 1'000'000 : 20'000;
-  const auto session = live();
+  const auto session = live({"--ttl", "2550"});
   const test::UdpSender sender(port_);
   const test::UdpSender other(port_);
   std::mt19937 random(1);
@@ -244,7 +244,7 @@ TEST_F(Live, HostileDatagramsMoveNoMotor) {
   }
   std::this_thread::sleep_for(500ms);
   sender.send(there(1));
-  std::this_thread::sleep_for(50ms);
+  std::this_thread::sleep_for(500ms);
   sender.send(there(-1));  // through the body
   EXPECT_EQ(end(*session), 3);
   const auto json = json_in("live.json");
@@ -252,6 +252,25 @@ TEST_F(Live, HostileDatagramsMoveNoMotor) {
   const auto& lost = json["lost"];
   const int left_out = lost["malformed"].get<int>() + lost["strangers"].get<int>() + lost["overflowed"].get<int>();
   EXPECT_GT(left_out, count * 9 / 10) << "most of them are whole enough to be counted";
+}
+
+TEST_F(Live, MarkersAreRecordedAndEndNothing) {
+  for (const bool records : {false, true}) {
+    const auto session =
+        live(records ? std::vector<std::string>{"--record", path("felt.mcap"), "--force"} : std::vector<std::string>{});
+    const test::UdpSender sender(port_);
+    for (int i = 0; i < 1500; ++i) {
+      sender.send(bundle({collider(1, 0, 1.2F, 1), test::marker("here")}));
+      if (i % 100 == 0) std::this_thread::sleep_for(10ms);
+    }
+    std::this_thread::sleep_for(100ms);
+    sender.send(test::marker("last"));
+    EXPECT_EQ(end(*session), 0) << told();
+    std::filesystem::remove(folder_ / "live.json");
+    std::filesystem::remove(folder_ / "log.csv");
+  }
+  EXPECT_THAT(run("vestige cat felt.mcap --topic /events").standard_output,
+              ::testing::AllOf(HasSubstr("\"text\":\"here\""), HasSubstr("\"text\":\"last\"")));
 }
 
 TEST_F(Live, LinesOnStandardInputAreFelt) {

@@ -90,7 +90,8 @@ TEST_F(WholeFrames, EachDatagramIsOneUnlessTheSenderSaysWhereTheyEnd) {
 }
 
 TEST_F(WholeFrames, AFrameOfSeveralDatagramsIsNotShownHalfTold) {
-  EXPECT_FALSE(take(end_of_frame(0))) << "there is no frame yet, and now frames have ends";
+  EXPECT_FALSE(take(end_of_frame(0))) << "there is no frame yet";
+  EXPECT_TRUE(take(bundle({root_at(0), end_of_frame()}))) << "and now frames have ends";
   EXPECT_FALSE(take(root_at(1)));
   EXPECT_FALSE(take(collider(3, 1, 2, 3)));
   EXPECT_EQ(root_x(shown()), 0);
@@ -103,7 +104,7 @@ TEST_F(WholeFrames, AFrameOfSeveralDatagramsIsNotShownHalfTold) {
   EXPECT_THAT(ids_of(shown()), ElementsAre(3U));
   EXPECT_TRUE(take(bundle({bone("Head", kNoTurn), end_of_frame()})));
   EXPECT_NEAR(root_x(shown()), 2, 1e-6);
-  EXPECT_EQ(state_.frames(), 2U);
+  EXPECT_EQ(state_.frames(), 3U);
   EXPECT_EQ(state_.arrived(), time_);
 }
 
@@ -112,10 +113,8 @@ TEST_F(WholeFrames, CollidersBetweenPosesAreFramesOfTheirOwn) {
   EXPECT_TRUE(take(collider(3, 1, 2, 3)));
   EXPECT_THAT(ids_of(shown()), ElementsAre(3U));
   take(bundle({root_at(1.1), end_of_frame()}));
-  EXPECT_TRUE(state_.came_between());
-  take(bundle({root_at(1.2), end_of_frame()}));
-  EXPECT_FALSE(state_.came_between());
-  EXPECT_EQ(state_.poses(), 3U);
+  EXPECT_EQ(state_.frames(), 3U);
+  EXPECT_EQ(state_.poses(), 2U);
 }
 
 TEST_F(WholeFrames, ALostEndHoldsNothingUpForLong) {
@@ -176,6 +175,49 @@ TEST_F(WholeFrames, OfSeveralSendersTheFirstIsHeardUntilItIsSilent) {
   EXPECT_TRUE(take(root_at(4), state_, 2)) << "a state that hears everybody";
 }
 
+TEST_F(WholeFrames, WhereFramesEndIsForgottenWithTheSender) {
+  LiveState state(avatar_, glm::dvec3(0), {}, LiveState::Senders::kOneAtATime);
+  take(bundle({root_at(1), end_of_frame()}), state, 1);
+  EXPECT_FALSE(take(root_at(2), state, 1));
+  time_ += 1001ms;
+  EXPECT_TRUE(take(root_at(3), state, 2)) << "it has not said that its frames have ends";
+  EXPECT_NEAR(root_x(shown(state)), 3, 1e-6);
+}
+
+TEST_F(WholeFrames, ADatagramThatIsLeftOutTakesNoPlaceAndAMarkerNeedsNone) {
+  LiveState state(avatar_, glm::dvec3(0), {}, LiveState::Senders::kOneAtATime);
+  take(collider(3, 1, 2, 3), state, 1);
+  EXPECT_FALSE(take(bundle({root_at(1), collider(3, 4, 5, 6)}), state, 2));
+  EXPECT_TRUE(take(root_at(2), state, 3)) << "nobody sends poses yet";
+  take(test::marker("here"), state, 4);
+  EXPECT_EQ(state.vmc().markers().size(), 1U);
+  EXPECT_EQ(state.left_out(), 1U);
+}
+
+TEST_F(WholeFrames, CollidersOfAProgramThatFellSilentAreGone) {
+  LiveState state(avatar_, glm::dvec3(0), {}, LiveState::Senders::kOneAtATime);
+  take(collider(3, 1, 2, 3), state, 2);
+  const auto heard = time_;
+  take(root_at(1), state, 1);
+  EXPECT_FALSE(state.remove_colliders_silent_since(heard - 1ms));
+  EXPECT_TRUE(state.remove_colliders_silent_since(heard));
+  EXPECT_FALSE(state.remove_colliders_silent_since(heard)) << "once";
+  EXPECT_THAT(ids_of(shown(state)), IsEmpty());
+  take(collider(4, 1, 2, 3), state, 1);
+  EXPECT_FALSE(state.remove_colliders_silent_since(time_)) << "whoever sends poses may leave colliders where they are";
+}
+
+TEST_F(WholeFrames, ACollidersWayAcrossItsAbsenceIsNoMotion) {
+  take(collider(3, 1, 2, 3));
+  shown();
+  take(bundle({with_id("/vestige/collider/remove", 3), collider(3, -1, 2, 3)}));
+  EXPECT_THAT(shown().teleported, ElementsAre(3U)) << "it was gone in between, though nobody saw that";
+  take(with_id("/vestige/collider/remove", 3));
+  EXPECT_THAT(ids_of(shown()), IsEmpty());
+  take(collider(3, 1, 2, 3));
+  EXPECT_THAT(shown().teleported, IsEmpty()) << "all saw that";
+}
+
 TEST_F(WholeFrames, WhatCannotBeReadChangesNothing) {
   take(bundle({root_at(1), end_of_frame()}));
   EXPECT_FALSE(take(bundle({root_at(std::numeric_limits<double>::quiet_NaN()), end_of_frame()})));
@@ -199,6 +241,9 @@ TEST_F(WholeFrames, OfSeveralSourcesBecomeOneScene) {
   EXPECT_THAT(frame.teleported, ElementsAre(2U));
   EXPECT_THAT(teleported, ElementsAre(IsEmpty(), ElementsAre(2U)));
   EXPECT_TRUE(scene.ids_clash());
+  take(with_id("/vestige/collider/remove", 3));
+  scene.show(frame);
+  EXPECT_EQ(frame.colliders[1].position_m, glm::dvec3(9, 9, 9)) << "whoever sent it first has given it up";
 }
 
 }  // namespace
