@@ -42,7 +42,7 @@ RealTime take_real_time() {
     taken.priority = allowed;
   } else {
     taken.refused.emplace_back(
-        "the system does not allow real-time scheduling; grant it by '@USER - rtprio 20' in "
+        "the system does not allow real-time scheduling; grant it by 'USER - rtprio 20' in "
         "/etc/security/limits.conf, and log in again");
   }
   const bool is_unlimited = ::geteuid() == 0 || limit_of(RLIMIT_MEMLOCK, RLIM_INFINITY) == RLIM_INFINITY;
@@ -50,7 +50,7 @@ RealTime take_real_time() {
     taken.memory_locked = true;
   } else {
     taken.refused.emplace_back(
-        "the system does not allow to lock all memory; grant it by '@USER - memlock unlimited' in "
+        "the system does not allow to lock all memory; grant it by 'USER - memlock unlimited' in "
         "/etc/security/limits.conf, and log in again");
   }
   return taken;

@@ -103,7 +103,7 @@ LivePlan plan_of(const CLI::App& verb, LiveVerbOptions& options) {
   plan.sources = sources_of(options);
   const std::size_t people = plan.sources.size();
   plan.avatars.assign(people, "builtin");
-  options.scene = fmt::format("{}", fmt::join(options.sources, ", "));
+  options.scene = plan.is_lines() ? "standard input" : fmt::format("{}", fmt::join(options.sources, ", "));
   for (const PersonValue& avatar : parse_person_values(kAvatarFlag, options.avatars))
     plan.avatars[person_of(avatar, kAvatarFlag, people, options.scene)] = avatar.value;
   plan.ports = parse_ports(options);
@@ -184,7 +184,8 @@ void feel(LiveInput& input, LiveSession& session, LiveRecorder* recorder) {
     for (const std::string& refused : session.real_time->refused) tell("--realtime: " + refused);
   }
   if (verbosity != Verbosity::kQuiet)
-    print_message(fmt::format("vestige: listening on {}; Ctrl-C ends the session\n", options.scene));
+    print_message(fmt::format("vestige: {} {}; Ctrl-C ends the session\n",
+                              options.sources.front() == kStandardInput ? "reading" : "listening on", options.scene));
   LiveCalls calls;
   calls.make_laws = [&] { return make_laws(session.wearers); };
   calls.take = [&](std::size_t i, const ActuatorFrame& frame, Sender::Clock::time_point due) {
@@ -242,8 +243,8 @@ void run_live_verb(const CLI::App& verb, LiveVerbOptions& options, Invocation& i
   require_frame(session, plan);
   if (recorder) recorder->finish(session.result.notes);
   session.recorder = recorder.get();
-  print_summary(summary(session), plan.outputs, options.common);
   write_json(options.common.json, to_json(session, invocation), options.common);
+  print_summary(summary(session), plan.outputs, options.common);
   invocation.exit_code = report_losses(session);
 }
 

@@ -88,15 +88,23 @@ void LiveRecorder::finish(std::vector<RecordingNote> notes) {
 }
 
 nlohmann::ordered_json LiveRecorder::to_json() const {
-  return {{"files", recorder_->files()},
+  return {{"files", files()},
           {"frames", recorder_->frame_count()},
           {"bytes", recorder_->bytes_written()},
           {"left_out", left_out_},
           {"complete", is_complete()}};
 }
 
+std::vector<std::filesystem::path> LiveRecorder::files() const {
+  return recorder_->frame_count() > 0 ? recorder_->files() : std::vector<std::filesystem::path>();
+}
+
 std::string LiveRecorder::describe() const {
-  return fmt::format("{}: {}, {:.1f} MB{}\n", path_.string(), counted(recorder_->frame_count(), "frame"),
+  const std::vector<std::filesystem::path> written = files();
+  if (written.empty()) return fmt::format("{}: nothing was recorded\n", path_.string());
+  std::string names = written.front().string();
+  if (written.size() > 1) names += " to " + written.back().string();
+  return fmt::format("{}: {}, {:.1f} MB{}\n", names, counted(recorder_->frame_count(), "frame"),
                      static_cast<double>(recorder_->bytes_written()) / 1e6,
                      is_complete() ? "" : "; not all that was felt is recorded");
 }

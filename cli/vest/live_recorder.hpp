@@ -35,6 +35,8 @@ class LiveRecorder {
   std::string describe() const;
 
  private:
+  /// The files that hold frames.
+  std::vector<std::filesystem::path> files() const;
   template <typename Work>
   void attempt(const Work& work);
   void add(RecordingNote note);

@@ -11,6 +11,8 @@ namespace {
 constexpr std::chrono::seconds kSilence(1);
 /// A pose of which nothing came for so long is at its end.
 constexpr std::chrono::milliseconds kLongestPause(10);
+/// A sender that has not ended a frame for so long does not say where frames end.
+constexpr std::chrono::milliseconds kLongestPart(100);
 
 }  // namespace
 
@@ -37,7 +39,7 @@ bool LiveState::admits(const VmcContent& content, const Datagram& datagram) {
     return false;
   }
   if (tells_pose) {
-    if (of_pose_.address && *of_pose_.address != datagram.sender) tells_end_ = false;
+    if (of_pose_.address && *of_pose_.address != datagram.sender) ends_ = Ends::kUnknown;
     of_pose_.hear(datagram);
   }
   if (content.colliders) of_colliders_.hear(datagram);
@@ -57,16 +59,24 @@ void LiveState::remove_colliders() {
 }
 
 bool LiveState::completes(const VmcContent& content) const {
-  return content.ends || !tells_end_ || (!content.pose && !is_told_in_part_);
+  return content.ends || ends_ == Ends::kNeverTold || (!content.pose && !is_told_in_part_);
 }
 
 void LiveState::begin_part(const VmcContent& content, Clock::time_point arrived) {
   if (!is_told_in_part_) {
     state_.show(kept_);
     mark_teleported(kept_.teleported);
+    part_begun_ = arrived;
   }
   is_told_in_part_ = true;
   if (content.pose) part_told_ = arrived;
+}
+
+void LiveState::end_old_part(Clock::time_point now) {
+  if (!is_told_in_part_) return;
+  const bool pauses = now - part_told_ > kLongestPause;
+  if (now - part_begun_ > kLongestPart || (pauses && ends_ == Ends::kUnknown)) ends_ = Ends::kNeverTold;
+  if (pauses) note_whole(part_told_);
 }
 
 bool LiveState::take(const Datagram& datagram) {
@@ -75,8 +85,8 @@ bool LiveState::take(const Datagram& datagram) {
   bool ends = false;
   const bool changed = state_.take(datagram.bytes, [&](const VmcContent& content) {
     if (!admits(content, datagram)) return false;
-    if (is_told_in_part_ && datagram.arrived - part_told_ > kLongestPause) note_whole(part_told_);
-    if (content.ends && !std::exchange(tells_end_, true)) begins_ = true;
+    end_old_part(datagram.arrived);
+    if (content.ends && std::exchange(ends_, Ends::kTold) == Ends::kNeverTold) begins_ = true;
     ends = content.ends;
     whole = completes(content);
     if (!whole) begin_part(content, datagram.arrived);

@@ -19,9 +19,9 @@ namespace vestige {
 /// What a VR program sends (`VmcState`), as whole frames: a frame that was told in part is not shown.
 ///
 /// A datagram that ends a frame (/VMC/Ext/OK) makes all whole that came before. So does a datagram without a message of
-/// the pose, unless a pose was begun and has not ended: colliders may come faster than poses. As long as the sender of
-/// the pose has not said where a frame ends, each datagram is whole. If a pose was begun and no more of it came for 10
-/// ms, the next datagram ends it: its end was lost, or the sender does not tell each end.
+/// the pose, unless a pose was begun and has not ended: colliders may come faster than poses. If a pose was begun and
+/// no more of it came for 10 ms, the next datagram ends it: its end was lost. If the sender of the pose has not said an
+/// end by then, or says none for 100 ms, each of its datagrams is whole, until it says one.
 class LiveState {
  public:
   using Clock = Datagram::Clock;
@@ -77,6 +77,8 @@ class LiveState {
   bool admits(const VmcContent& content, const Datagram& datagram);
   /// Whether all that was told is whole with a datagram of this content.
   bool completes(const VmcContent& content) const;
+  /// Takes a part as whole if its end does not come.
+  void end_old_part(Clock::time_point now);
   /// Before a part of a frame is told: keeps what is whole.
   void begin_part(const VmcContent& content, Clock::time_point arrived);
   void note_whole(Clock::time_point arrived);
@@ -85,10 +87,13 @@ class LiveState {
   Senders senders_;
   Speaker of_pose_;
   Speaker of_colliders_;
-  bool tells_end_ = false;        ///< the sender says where frames end
+  /// Whether the sender of the pose says where frames end.
+  enum class Ends : std::uint8_t { kUnknown, kTold, kNeverTold };
+  Ends ends_ = Ends::kUnknown;
   bool is_told_in_part_ = false;  ///< the state holds more than is whole, which is in `kept_`
   bool has_new_pose_ = false;     ///< the state holds a pose that is newer than the newest whole one
   bool begins_ = false;           ///< for `take_beginning`
+  Clock::time_point part_begun_;  ///< when the first datagram came of what is told in part
   Clock::time_point part_told_;   ///< when the newest datagram with a pose came, while something is told in part
   TraceFrame kept_;
   std::set<std::uint32_t> teleported_;  ///< of whole frames, not shown yet

@@ -70,7 +70,7 @@ UdpReceiver::UdpReceiver(const HostPort& place, const std::string& name) : buffe
     ::close(socket_);
     throw Error(name, fmt::format("could not listen: {}", std::strerror(error)),
                 error == EADDRINUSE
-                    ? "another program, or the --live of another person, listens there: end it, or choose another port"
+                    ? "another program, or another person's source, listens there: end it, or choose another port"
                     : "name an address of this machine, or 0.0.0.0 for all");
   }
 }

@@ -153,7 +153,7 @@ bool VmcState::apply(const OscMessage& message) {
   }
   if (message.address == "/vestige/teleport") {
     if (colliders_.contains(id(message))) teleported_.insert(id(message));
-    return true;
+    return false;  // it says something of where the collider is said to be next
   }
   if (message.address == "/vestige/marker")
     markers_.push_back({.kind = RecordingNote::Kind::kMarker, .text = text(message)});
