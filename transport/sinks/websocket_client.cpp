@@ -25,7 +25,8 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto kServerPatience = 3s;  ///< for the server's answer, and for it to take bytes
-constexpr auto kClosingPatience = 200ms;
+/// A server that is still sending when the connection is cut may lose the last texts that were sent to it.
+constexpr auto kClosingPatience = 1s;
 constexpr auto kBetweenLooks = 1ms;
 /// How often libwebsockets is called until a text has left: it may have something else to do first.
 constexpr int kTries = 4;

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Stands in for bHaptics' Player: a strict server of its websocket.
 
-It prints "listening on PORT", "connected" for each connection, and "on" when a vibrator runs for the first time on it.
+It prints "listening on PORT", "connected" for each connection, "on" when a vibrator begins to run and "off" when none
+runs any more.
 When a connection has ended, it prints a JSON object: "texts" (taken), "frames" (of them, those with a state), "most"
 (the largest intensity of each vibrator), "left_on" (the vibrators that still ran after the last text, had time stood
 still) and "faults" (texts and requests that a strict Player refuses). It ends after `--connections`.
@@ -108,9 +109,9 @@ async def serve(connection, options, player):
     was_on = False
     async for text in connection:
         player.take(text)
-        if player.left_on() and not was_on:
-            was_on = True
-            say("on")
+        if bool(player.left_on()) != was_on:
+            was_on = not was_on
+            say("on" if was_on else "off")
         with contextlib.suppress(websockets.ConnectionClosed):  # more texts may have come before that
             if options.garbage:
                 await connection.send("{\"Status\": [" + "x" * 100_000)

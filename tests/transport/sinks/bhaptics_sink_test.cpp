@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <functional>
+#include <future>
 #include <thread>
 
 #include "tests/support/bhaptics/player.hpp"
@@ -217,6 +218,12 @@ TEST_F(BhapticsSinkTest, NonsenseFromThePlayerDoesNoHarm) {
       send(sink, {255});
     }
     sink.send_off(1);
+    std::future<bool> is_off = std::async(std::launch::async, [&] { return player.wait_for("off"); });
+    ASSERT_TRUE(comes_true([&] {  // it takes texts only while its nonsense is read
+      sink.receive();
+      return is_off.wait_for(0s) == std::future_status::ready;
+    }));
+    EXPECT_TRUE(is_off.get());
   }
   const nlohmann::json report = player.report();
   EXPECT_EQ(report["texts"], 51) << report;
