@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/colours/palette.hpp"
 
 namespace vestige::plot {
 

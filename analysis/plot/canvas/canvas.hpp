@@ -1,23 +1,16 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "analysis/colours/colour.hpp"
+
 class vtkContext2D;
 
 namespace vestige::plot {
-
-/// sRGB and opacity, 0..255 each.
-struct Colour {
-  std::uint8_t red = 0;
-  std::uint8_t green = 0;
-  std::uint8_t blue = 0;
-  std::uint8_t alpha = 255;
-};
 
 /// Returns `colour` with this opacity (0..1).
 Colour faded(Colour colour, double opacity);

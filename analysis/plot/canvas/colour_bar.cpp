@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/colours/palette.hpp"
 
 namespace vestige::plot {
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/colour_bar.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

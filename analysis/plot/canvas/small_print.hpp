@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/canvas.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

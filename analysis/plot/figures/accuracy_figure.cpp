@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/free_place.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/small_print.hpp"
 
 namespace vestige::plot {

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/studio/studio.hpp"
 #include "traces/motion/animation_choice.hpp"

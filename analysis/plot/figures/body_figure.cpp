@@ -7,10 +7,10 @@
 #include <cmath>
 #include <optional>
 
+#include "analysis/colours/palette.hpp"
+#include "analysis/colours/region_colours.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/heat.hpp"
-#include "analysis/plot/canvas/palette.hpp"
-#include "analysis/plot/canvas/region_colours.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/studio/body_sides.hpp"
 #include "analysis/plot/studio/contact_density.hpp"

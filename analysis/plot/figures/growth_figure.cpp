@@ -6,8 +6,8 @@
 #include <array>
 #include <utility>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/small_print.hpp"
 
 namespace vestige::plot {

@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/small_print.hpp"
 #include "analysis/plot/figures/stage_figure.hpp"
 

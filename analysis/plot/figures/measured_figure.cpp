@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::plot {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/colours/palette.hpp"
+#include "analysis/colours/region_colours.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
-#include "analysis/plot/canvas/region_colours.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/studio/studio.hpp"
 #include "traces/scene/radius.hpp"

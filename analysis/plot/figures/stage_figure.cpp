@@ -8,8 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/small_print.hpp"
 
 namespace vestige::plot {

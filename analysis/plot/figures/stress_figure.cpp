@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/colours/palette.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::plot {

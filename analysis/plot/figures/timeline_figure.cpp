@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/colour_bar.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "traces/base/csv.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"

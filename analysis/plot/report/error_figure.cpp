@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/data/report_words.hpp"
 #include "traces/base/number_text.hpp"
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/colours/palette.hpp"
+#include "analysis/colours/region_colours.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/heat.hpp"
-#include "analysis/plot/canvas/palette.hpp"
-#include "analysis/plot/canvas/region_colours.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/data/report_words.hpp"
 #include "analysis/plot/studio/contact_density.hpp"

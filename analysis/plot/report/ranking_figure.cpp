@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/data/report_words.hpp"
 
 namespace vestige::plot {

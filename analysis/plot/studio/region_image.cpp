@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/colours/palette.hpp"
 
 namespace vestige::plot {
 

@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <limits>
 
-#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/colours/palette.hpp"
 
 namespace vestige::plot {
 

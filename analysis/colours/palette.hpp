@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/plot/canvas/canvas.hpp"
+#include "analysis/colours/colour.hpp"
 
 namespace vestige::plot {
 

@@ -1,9 +1,9 @@
-#include "analysis/plot/canvas/region_colours.hpp"
+#include "analysis/colours/region_colours.hpp"
 
 #include <array>
 #include <cmath>
 
-#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/colours/palette.hpp"
 
 namespace vestige::plot {
 

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "analysis/plot/canvas/canvas.hpp"
+#include "analysis/colours/colour.hpp"
 
 namespace vestige::plot {
 

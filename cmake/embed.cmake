@@ -1,5 +1,6 @@
-# Run with -P: writes each of FILES into OUT as a string named after it (paper.vert: kPaperVert).
-set(text "#include \"shaders/shaders.hpp\"\n\nnamespace vestige::shaders {\n")
+# Run with -P: writes each of FILES into OUT as a string in NAMESPACE, named after it (paper.vert: kPaperVert). HEADER
+# declares them.
+set(text "#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n")
 foreach(file ${FILES})
   file(READ ${file} content)
   get_filename_component(name ${file} NAME)
@@ -11,7 +12,7 @@ foreach(file ${FILES})
     string(TOUPPER ${first} first)
     string(APPEND identifier "${first}${rest}")
   endforeach()
-  string(APPEND text "const std::string_view ${identifier} = R\"glsl(${content})glsl\";\n")
+  string(APPEND text "const std::string_view ${identifier} = R\"embedded(${content})embedded\";\n")
 endforeach()
-string(APPEND text "}  // namespace vestige::shaders\n")
+string(APPEND text "}  // namespace ${NAMESPACE}\n")
 file(WRITE ${OUT} "${text}")

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+
+namespace vestige::plot {
+
+/// sRGB and opacity, 0..255 each.
+struct Colour {
+  std::uint8_t red = 0;
+  std::uint8_t green = 0;
+  std::uint8_t blue = 0;
+  std::uint8_t alpha = 255;
+};
+
+}  // namespace vestige::plot
