@@ -81,7 +81,7 @@ class ColliderShapes {
   constructor(colliders) {
     this.colliders = colliders;
     const count = colliders.id.length;
-    const shape = new THREE.IcosahedronBufferGeometry(1, count > 300 ? 1 : 2);
+    const shape = new THREE.IcosahedronBufferGeometry(1, 1);
     this.balls = new THREE.InstancedMesh(shape, new THREE.MeshLambertMaterial({color: 0x8a94a0}), Math.max(1, count));
     this.trailMaterial = new THREE.ShaderMaterial({
       vertexShader: kTrailVertexShader, fragmentShader: kTrailFragmentShader, transparent: true, depthWrite: false,
@@ -181,7 +181,7 @@ class Scene {
     const facing = this.trace.people[0].info.facing;
     const angle = (kViews[view] + kFacings[facing]) * Math.PI / 180;
     const narrow = Math.min(1, this.camera.aspect);
-    const away_m = this.size_m * 1.5 / Math.max(0.35, narrow);
+    const away_m = this.size_m * 1.7 / Math.max(0.35, narrow);
     const target = this.middle.clone().add(this.root);
     this.orbit.target.copy(target);
     this.camera.position.set(target.x + away_m * Math.sin(angle), target.y + 0.08 * away_m, target.z + away_m * Math.cos(angle));

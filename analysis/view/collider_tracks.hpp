@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/view/page_data.hpp"
+#include "traces/scene/trace.hpp"
+
+namespace vestige {
+
+/// Places on a page are whole numbers of this length.
+inline constexpr double kPageUnit_m = 1e-4;
+/// The page leaves out what is farther than this from its origin along an axis.
+inline constexpr double kPageReach_m = 2e5;
+
+/// Where a frame stands: among the frames of the page, among those of the trace, and in time.
+struct PageRow {
+  std::uint32_t row = 0;
+  std::uint64_t index = 0;
+  double time_s = 0;
+};
+
+/// Thins the ways of colliders for the eye. A key is kept where a straight, even motion from the key before would miss
+/// a sample between by more than `kTolerance_m` along an axis. So a collider that flies straight has two keys. Where a
+/// collider appears, jumps (teleport), or the trace has a gap, a new way begins.
+class ColliderTracks {
+ public:
+  static constexpr double kTolerance_m = 0.25e-3;
+  /// How far a drawn collider can be from its place in the trace: tolerance and rounding along three axes.
+  static constexpr double kError_mm = 1e3 * 1.7320508 * (kTolerance_m + kPageUnit_m / 2);
+
+  /// `ids`: all colliders of the trace, ascending.
+  explicit ColliderTracks(std::span<const std::uint32_t> ids);
+
+  /// Takes the colliders of the next frame, of which those with other ids are ignored.
+  void add(const PageRow& at, const TraceFrame& frame, const glm::dvec3& origin_m);
+  /// Ends all ways and adds the arrays of `PageArrays`.
+  void finish(PageArrays& arrays);
+
+ private:
+  struct Sample {
+    PageRow at;
+    glm::dvec4 place = glm::dvec4(0);  ///< x, y, z and radius, in metres
+  };
+  struct Key {
+    std::uint32_t row = 0;
+    std::array<std::int32_t, 4> place = {};
+    bool begins = false;
+  };
+  struct Track {
+    std::vector<Key> keys;
+    Sample anchor;  ///< of the last key
+    Sample last;
+    /// The velocities from the anchor that miss no sample since.
+    glm::dvec4 low = glm::dvec4(-std::numeric_limits<double>::infinity());
+    glm::dvec4 high = glm::dvec4(std::numeric_limits<double>::infinity());
+  };
+
+  static void keep(Track& track, const Sample& sample, bool begins);
+  static void extend(Track& track, const Sample& sample);
+  static void end(Track& track);
+
+  std::vector<std::uint32_t> ids_;
+  std::vector<Track> tracks_;
+};
+
+}  // namespace vestige

@@ -1,0 +1,160 @@
+#include "analysis/view/page_packer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "analysis/colours/region_colours.hpp"
+
+namespace vestige {
+
+namespace {
+
+std::string css(plot::Colour colour) {
+  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
+}
+
+/// Rounded up, so that the page promises no more than is true.
+double tenths_up(double value) {
+  return std::ceil(value * 10) / 10;
+}
+
+void add_mesh(PageArrays& arrays, const std::string& prefix, const Avatar& avatar) {
+  std::vector<float> positions;
+  std::vector<float> coordinates;
+  std::vector<std::uint16_t> joints;
+  std::vector<std::uint16_t> weights;
+  for (const glm::vec3& position : avatar.position_bind)
+    positions.insert(positions.end(), {position.x, position.y, position.z});
+  for (const glm::vec2& place : avatar.texture_coordinate) coordinates.insert(coordinates.end(), {place.x, place.y});
+  for (const Influences& influences : avatar.influences) {
+    const PageInfluences page = page_influences(influences);
+    joints.insert(joints.end(), page.palette.begin(), page.palette.end());
+    weights.insert(weights.end(), page.weight.begin(), page.weight.end());
+  }
+  std::vector<std::uint32_t> triangles;
+  for (const glm::uvec3& triangle : avatar.triangles)
+    triangles.insert(triangles.end(), {triangle.x, triangle.y, triangle.z});
+  arrays.add(prefix + "position_bind", positions);
+  arrays.add(prefix + "texture_coordinate", coordinates);
+  arrays.add(prefix + "joint", joints);
+  arrays.add(prefix + "weight", weights);
+  arrays.add(prefix + "triangle", triangles, 3);
+}
+
+nlohmann::ordered_json actuators_of(const ActuatorMap& map) {
+  nlohmann::ordered_json actuators = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < map.actuator_count; ++i)
+    actuators.push_back({{"name", map.names[i]}, {"colour", css(plot::region_colour(i + 1, map.actuator_count))}});
+  return actuators;
+}
+
+}  // namespace
+
+PagePacker::PagePacker(std::span<const PagePerson> people, std::span<const std::uint32_t> collider_ids)
+    : colliders_(collider_ids) {
+  people_.reserve(people.size());
+  for (const PagePerson& person : people) {
+    people_.push_back({person, PoseKeys(person.avatar)});
+    people_.back().duties.last.resize(person.map.actuator_count);
+  }
+}
+
+void PagePacker::add(const TraceFrame& frame) {
+  if (frame_index_.empty()) {
+    origin_m_ = glm::round(frame.poses.front().origin_m);
+    for (int axis = 0; axis < 3; ++axis)
+      if (!std::isfinite(origin_m_[axis])) origin_m_[axis] = 0;
+  }
+  const PageRow at = {static_cast<std::uint32_t>(frame_index_.size()), frame.index, frame.time_s()};
+  frame_index_.push_back(static_cast<std::uint32_t>(frame.index));
+  time_ns_.push_back(static_cast<double>(frame.time_ns));
+  for (std::size_t i = 0; i < people_.size(); ++i) people_[i].poses.add(at, frame.poses[i], origin_m_);
+  colliders_.add(at, frame, origin_m_);
+}
+
+void PagePacker::add_contacts(std::size_t person, const DetectorFrame& frame, const ContactRow& row) {
+  Contacts& all = people_[person].contacts;
+  for (std::size_t column = 0; column < row.size(); ++column) {
+    const Contact& contact = row[column];
+    if (!contact.hit()) continue;
+    all.row.push_back(static_cast<std::uint32_t>(frame_index_.size() - 1));
+    all.collider.push_back(static_cast<std::uint32_t>(column));
+    all.triangle.push_back(contact.triangle);
+    all.t.push_back(contact.t);
+    all.barycentric.insert(all.barycentric.end(), {contact.barycentric.x, contact.barycentric.y});
+    const glm::dvec3 position_m = frame.origin_m + contact.position;
+    all.position_m.insert(all.position_m.end(), {position_m.x, position_m.y, position_m.z});
+    all.actuator.push_back(contact.actuator);
+    all.side.push_back(contact.side);
+  }
+}
+
+void PagePacker::add_duties(std::size_t person, const ActuatorFrame& felt) {
+  Duties& all = people_[person].duties;
+  for (std::size_t i = 0; i < felt.duty.size(); ++i) {
+    if (felt.duty[i] == all.last[i]) continue;
+    all.last[i] = felt.duty[i];
+    all.row.push_back(static_cast<std::uint32_t>(frame_index_.size() - 1));
+    all.actuator.push_back(static_cast<std::uint16_t>(i));
+    all.duty.push_back(felt.duty[i]);
+  }
+}
+
+std::uint64_t PagePacker::contacts() const {
+  std::uint64_t sum = 0;
+  for (const Person& person : people_) sum += person.contacts.row.size();
+  return sum;
+}
+
+nlohmann::ordered_json PagePacker::finish_person(Person& person, const std::string& prefix) {
+  const ActuatorMap& map = person.who.map;
+  add_mesh(arrays_, prefix, person.who.avatar);
+  arrays_.add(prefix + "map_actuator", map.actuator, 1);
+  const std::array<double, 2> steps = person.poses.finish(arrays_, prefix);
+  const Contacts& contacts = person.contacts;
+  arrays_.add(prefix + "contact_row", contacts.row, 1);
+  arrays_.add(prefix + "contact_collider", contacts.collider);
+  arrays_.add(prefix + "contact_triangle", contacts.triangle);
+  arrays_.add(prefix + "contact_t", contacts.t);
+  arrays_.add(prefix + "contact_barycentric", contacts.barycentric);
+  arrays_.add(prefix + "contact_position_m", contacts.position_m);
+  arrays_.add(prefix + "contact_actuator", contacts.actuator);
+  arrays_.add(prefix + "contact_side", contacts.side);
+  arrays_.add(prefix + "duty_row", person.duties.row, 1);
+  arrays_.add(prefix + "duty_actuator", person.duties.actuator);
+  arrays_.add(prefix + "duty", person.duties.duty);
+  return {{"name", person.who.name},
+          {"facing", to_string(person.who.avatar.facing.axis)},
+          {"joints", person.who.avatar.palette.size()},
+          {"matrix_step", steps},
+          {"actuators", actuators_of(map)},
+          {"unmapped", css(plot::region_colour(0, map.actuator_count))},
+          {"map", {{"width", map.width}, {"height", map.height}, {"by_triangle", map.triangle_count > 0}}}};
+}
+
+PageContent PagePacker::finish() {
+  arrays_.add("frame_index", frame_index_, 1);
+  arrays_.add("time_ns", time_ns_, 1);
+  colliders_.finish(arrays_);
+  nlohmann::ordered_json people = nlohmann::ordered_json::array();
+  double error_mm = 0;
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    people.push_back(finish_person(people_[i], fmt::format("person_{}/", i + 1)));
+    error_mm = std::max(error_mm, people_[i].poses.largest_error_mm());
+  }
+  PageContent content;
+  content.head = {{"version", 1},
+                  {"unit_m", kPageUnit_m},
+                  {"origin_m", {origin_m_.x, origin_m_.y, origin_m_.z}},
+                  {"error_mm", {{"skin", tenths_up(error_mm)}, {"colliders", tenths_up(ColliderTracks::kError_mm)}}},
+                  {"people", std::move(people)},
+                  {"arrays", arrays_.table()},
+                  {"bytes", arrays_.byte_count()}};
+  content.data = arrays_.packed();
+  return content;
+}
+
+}  // namespace vestige

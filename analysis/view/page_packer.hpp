@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/view/collider_tracks.hpp"
+#include "analysis/view/page_data.hpp"
+#include "analysis/view/pose_keys.hpp"
+#include "detector/actuator_map.hpp"
+#include "detector/contact.hpp"
+#include "detector/frame.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/trace.hpp"
+#include "traces/timeline/timeline.hpp"
+
+namespace vestige {
+
+/// A person of a page.
+struct PagePerson {
+  std::string name;  ///< empty: the trace names nobody
+  const Avatar& avatar;
+  const ActuatorMap& map;
+};
+
+/// What a page carries.
+struct PageContent {
+  nlohmann::ordered_json head;
+  std::string data;  ///< `PageArrays::packed`
+};
+
+/// Packs a trace with its contacts and duties for a page. Poses and colliders are thinned for the eye (`PoseKeys`,
+/// `ColliderTracks`). Contacts and duties are kept exactly.
+class PagePacker {
+ public:
+  /// Keeps references to avatars and maps. `collider_ids`: all of the trace, ascending.
+  PagePacker(std::span<const PagePerson> people, std::span<const std::uint32_t> collider_ids);
+
+  /// Takes the next frame of the trace.
+  void add(const TraceFrame& frame);
+  /// Takes what was found on a person, counted from 0, in the frame taken last. The row must carry triangle, t,
+  /// barycentric, position and side.
+  void add_contacts(std::size_t person, const DetectorFrame& frame, const ContactRow& row);
+  /// Takes the duties of a person in the frame taken last.
+  void add_duties(std::size_t person, const ActuatorFrame& felt);
+
+  std::uint64_t contacts() const;
+  /// Returns head and data. The head has people, arrays, and how exact the picture is.
+  PageContent finish();
+
+ private:
+  struct Contacts {
+    std::vector<std::uint32_t> row, collider, triangle;
+    std::vector<float> t;
+    std::vector<double> barycentric, position_m;
+    std::vector<std::uint16_t> actuator;
+    std::vector<std::int8_t> side;
+  };
+  struct Duties {
+    std::vector<std::uint8_t> last;
+    std::vector<std::uint32_t> row;
+    std::vector<std::uint16_t> actuator;
+    std::vector<std::uint8_t> duty;
+  };
+  struct Person {
+    PagePerson who;
+    PoseKeys poses;
+    Contacts contacts = {};
+    Duties duties = {};
+  };
+
+  nlohmann::ordered_json finish_person(Person& person, const std::string& prefix);
+
+  std::vector<Person> people_;
+  ColliderTracks colliders_;
+  glm::dvec3 origin_m_ = glm::dvec3(0);  ///< the whole metres nearest to the first person's first place
+  std::vector<std::uint32_t> frame_index_;
+  std::vector<double> time_ns_;
+  PageArrays arrays_;
+};
+
+}  // namespace vestige
