@@ -10,6 +10,7 @@ namespace vestige::cli {
 // verb runs it.
 void add_record(CLI::App& program, Invocation& invocation);
 void add_replay(CLI::App& program, Invocation& invocation);
+void add_view(CLI::App& program, Invocation& invocation);
 void add_sweep(CLI::App& program, Invocation& invocation);
 void add_growth(CLI::App& program, Invocation& invocation);
 void add_compare(CLI::App& program, Invocation& invocation);

@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/base/provenance.hpp"
+#include "analysis/run/detection_run.hpp"
+#include "analysis/view/page.hpp"
+#include "analysis/view/page_packer.hpp"
+#include "cli/choices/detectors.hpp"
+#include "cli/choices/law_choice.hpp"
+#include "cli/choices/scene.hpp"
+#include "cli/measure/replay_check.hpp"
+#include "cli/verbs.hpp"
+#include "detector/actuators/law_maker.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
+#include "traces/files/output_file.hpp"
+#include "traces/trace_file/trace_format.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+/// Larger pages open slowly.
+constexpr std::size_t kLargePage_bytes = 25'000'000;
+
+struct ViewOptions {
+  CommonOptions common;
+  DetectorChoice choice;
+  LawFlags law;
+  std::string trace;
+  std::string output;
+  bool open = false;
+};
+
+/// Beside the trace: man.mcap becomes man.html.
+std::string output_path(const ViewOptions& options) {
+  if (!options.output.empty()) return options.output;
+  if (options.trace == "-")
+    throw UsageError("-o", "a trace from standard input has no name", "name the page: -o PAGE.html");
+  return std::filesystem::path(options.trace).replace_extension(".html").string();
+}
+
+/// The drive of each person's motors; empty for a person without an actuator.
+using Drives = std::vector<std::optional<DriveMaker>>;
+
+Drives make_drives(const ViewOptions& options, OpenTrace& trace) {
+  Drives drives(trace.people.size());
+  bool any = false;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const TracedPerson& person = trace.people[i];
+    if (person.map.actuator_count == 0) continue;
+    any = true;
+    drives[i].emplace(options.law, person.avatar, person.map);
+  }
+  if (any) require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
+  return drives;
+}
+
+PlaneSet planes_of(const Drives& drives) {
+  PlaneSet planes = kHashedPlanes | Plane::kBarycentric | Plane::kPosition | Plane::kSide;
+  for (const auto& drive : drives)
+    if (drive) planes = planes | drive->planes();
+  return planes;
+}
+
+/// Reads the whole trace into `packer`.
+void pack_frames(OpenTrace& trace, const PeopleDetectors& detectors, const Drives& drives, PagePacker& packer,
+                 const ViewOptions& options) {
+  const std::vector<std::uint32_t> ids = trace.reader.collider_ids();
+  std::vector<DetectedPerson> people;
+  std::vector<std::unique_ptr<ActuatorDrive>> running(drives.size());
+  for (std::size_t i = 0; i < trace.people.size(); ++i) {
+    people.push_back({i, trace.people[i].avatar, *detectors[i]});
+    if (drives[i]) running[i] = drives[i]->make();
+  }
+  DetectionRun run(people, ids);
+  const auto total = static_cast<double>(trace.reader.frame_count());
+  double done = 0;
+  Progress progress("Looking for contacts", options.common.verbosity());
+  TraceFrame frame;
+  while (trace.reader.next(frame)) {
+    run.step(frame);
+    packer.add(frame);
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      packer.add_contacts(i, run.frame(i), run.row(i));
+      if (running[i]) packer.add_duties(i, running[i]->next(frame.time_s(), run.row(i), &run.frame(i)));
+    }
+    if (!progress.update(++done / total)) throw Error(options.trace, "writing the page was stopped", "");
+  }
+}
+
+/// What the page says below its title.
+std::vector<std::string> about(const ViewOptions& options, const PeopleDetectors& detectors, const Drives& drives) {
+  std::vector<std::string> texts = {fmt::format("detector {}", detectors.front()->name())};
+  const bool has_motors = std::ranges::any_of(drives, [](const auto& drive) { return drive.has_value(); });
+  if (has_motors) texts.push_back(fmt::format("law {}, hold {} ms", options.law.law, options.law.hold_ms));
+  texts.push_back("vestige " + commit().substr(0, 10));
+  return texts;
+}
+
+void warn_of_size(std::size_t bytes, const std::string& output, const ViewOptions& options) {
+  if (bytes <= kLargePage_bytes) return;
+  warn(
+      fmt::format("{}: {:.0f} MB, which browsers open slowly; cut the trace first: vestige trim {} --from 0 --to 60 -o "
+                  "part.mcap",
+                  output, static_cast<double>(bytes) / 1e6, options.trace),
+      options.common.verbosity());
+}
+
+void open_in_browser(const std::string& page, Verbosity verbosity) {
+  std::string program = "xdg-open";
+  std::string path = std::filesystem::absolute(page).string();
+  char* const arguments[] = {program.data(), path.data(), nullptr};
+  pid_t child = 0;
+  const int failure = ::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ);
+  if (failure != 0)
+    warn(fmt::format("--open: xdg-open cannot be run: {}; open {} in a browser", std::strerror(failure), page),
+         verbosity);
+}
+
+void run_view(const ViewOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  const std::string output = output_path(options);
+  options.law.check();
+  if (options.open && output == "-")
+    throw UsageError("--open", "a page on standard output has no name", "name a file with -o");
+  check_outputs({output, options.common.json}, {options.trace, options.law.actuator}, options.common);
+  OpenTrace trace(options.trace, verbosity, People::kSeveral);
+  for (std::size_t i = 0; i < trace.people.size(); ++i)
+    require_surface(
+        trace.people[i].avatar,
+        fmt::format("{}, {}", options.trace, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
+  require_frames(trace.reader, options.trace);
+  const Drives drives = make_drives(options, trace);
+  const PeopleDetectors detectors = make_detectors(options.choice.detector, options.choice, trace, planes_of(drives));
+  warn_of_radii({detectors.front()->name()}, trace.reader, options.trace, verbosity);
+
+  catch_interrupts();
+  std::vector<PagePerson> people;
+  for (const TracedPerson& person : trace.people) people.push_back({person.name, person.avatar, person.map});
+  PagePacker packer(people, trace.reader.collider_ids());
+  pack_frames(trace, detectors, drives, packer, options);
+  PageContent content = packer.finish();
+  content.head["about"] = about(options, detectors, drives);
+  content.head["warnings"] = damage_of(trace.reader, options.trace);
+  const std::string title = options.trace == "-" ? "trace" : std::filesystem::path(options.trace).filename().string();
+  const std::string page = make_page(title, content);
+  OutputFile file(output, options.common.overwrite());
+  file.write(page);
+  file.commit();
+
+  warn_of_size(page.size(), output, options);
+  print_summary(fmt::format("{}: {} and {}, {:.1f} MB\n", output, counted(trace.reader.frame_count(), "frame"),
+                            counted(packer.contacts(), "contact"), static_cast<double>(page.size()) / 1e6),
+                {output, options.common.json}, options.common);
+  write_json(options.common.json,
+             with_provenance(invocation.argv, {{"trace", options.trace},
+                                               {"output", output},
+                                               {"detector", detectors.front()->name()},
+                                               {"frames", trace.reader.frame_count()},
+                                               {"contacts", packer.contacts()},
+                                               {"bytes", page.size()},
+                                               {"error_mm", content.head["error_mm"]},
+                                               {"complete", trace.reader.complete()}}),
+             options.common);
+  invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
+  if (options.open) open_in_browser(output, verbosity);
+}
+
+}  // namespace
+
+void add_view(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<ViewOptions>();
+  CLI::App* verb = add_verb(program, "view", "Write a trace as a web page in which it moves",
+                            "  vestige view man.mcap\n"
+                            "  vestige view man.mcap --law speed --open -o page.html\n");
+  verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
+  verb->add_option(
+          "-o,--output", options->output,
+          "The page, which needs nothing beside it and no network [default: the trace's name, ending in .html]")
+      ->type_name("PAGE.html|-");
+  verb->add_flag("--open", options->open, "Open the page in the browser");
+  add_detector_and_context(*verb, options->choice);
+  add_detector_options(*verb, options->choice);
+  add_law_options(*verb, options->law, "Intensity");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_view(*options, invocation); });
+}
+
+}  // namespace vestige::cli
