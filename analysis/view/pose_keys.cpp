@@ -14,6 +14,9 @@ namespace vestige {
 namespace {
 
 constexpr double kAlmost = 1e-6;  // of a second: times are rounded
+/// The most that a joint turns between kept poses, in radians, about. Half a metre from the joint, the straight way
+/// between them is then 0.6 mm off the arc: 0.5 m * 0.1^2 / 8.
+constexpr double kMostTurn = 0.1;
 constexpr std::size_t kMeasuredAtFirst = 60;
 constexpr std::size_t kMeasuredLater = 60;  // every so many intervals
 
@@ -25,6 +28,22 @@ bool is_drawable(const glm::dvec3& root_m, const std::vector<glm::dmat4>& palett
       for (int axis = 0; axis < 3; ++axis)
         if (!(std::abs(matrix[column][axis]) < kPageReach_m)) return false;
   return true;
+}
+
+/// How far any joint has turned, in radians, about: the largest change in a matrix, in parts of its largest number.
+double turn_between(const std::vector<glm::dmat4>& a, const std::vector<glm::dmat4>& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    double change = 0;
+    double size = std::numeric_limits<double>::min();
+    for (int column = 0; column < 3; ++column)
+      for (int axis = 0; axis < 3; ++axis) {
+        change = std::max(change, std::abs(a[i][column][axis] - b[i][column][axis]));
+        size = std::max(size, std::abs(a[i][column][axis]));
+      }
+    most = std::max(most, change / size);
+  }
+  return most;
 }
 
 /// The vertex as the page skins it, relative to the root.
@@ -80,13 +99,15 @@ void PoseKeys::add(const PageRow& at, const Pose& pose, const glm::dvec3& origin
   const std::uint64_t before = last_ ? last_->at.index : kept_.at.index;
   const bool is_first = rows_.empty();
   const bool after_gap = !is_first && at.index != before + 1;
+  const double share =  // of what may lie between two kept poses
+      is_first ? 1 : std::max((passed_s + kAlmost) * kRate_hz, turn_between(kept_.palette, now_.palette) / kMostTurn);
   if (after_gap && last_) keep(*std::exchange(last_, {}));
-  if (is_first || after_gap || passed_s >= 1 / kRate_hz - kAlmost) {
+  if (is_first || after_gap || share >= 1) {
     if (!is_first && !after_gap && middle_) measure(kept_, now_);
     keep(now_);
     last_.reset();
   } else {
-    if (!middle_ && passed_s >= 0.5 / kRate_hz - kAlmost) middle_ = now_;
+    if (!middle_ && share >= 0.5) middle_ = now_;
     last_ = now_;
   }
 }

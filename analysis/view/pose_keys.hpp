@@ -24,8 +24,9 @@ struct PageInfluences {
 };
 PageInfluences page_influences(const Influences& influences);
 
-/// Thins a person's poses for the eye: 60 in a second, and the first and the last of every stretch without a gap. It
-/// compares the skin half-way between kept poses with the trace's own: often at first, later now and then.
+/// Thins a person's poses for the eye. It keeps 60 in a second, more where a joint turns fast, and the first and the
+/// last of every stretch without a gap. It compares the skin half-way between kept poses with the trace's own: often at
+/// first, later now and then.
 class PoseKeys {
  public:
   static constexpr double kRate_hz = 60;
