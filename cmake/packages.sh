@@ -7,7 +7,7 @@ build_packages="build-essential cmake ninja-build pkg-config git
   libvtk9-dev fonts-liberation2"
 test_packages="libcgal-dev libgtest-dev libgmock-dev librapidcheck-dev libexpat1-dev zstd clang-14
   libclang-rt-14-dev clang-format-14 clang-tidy-14 patchelf mandoc groff man-db lintian zsh fish
-  gcc-avr avr-libc libsimavr-dev libelf-dev liblo-tools python3-jsonschema python3-websockets
+  gcc-avr avr-libc libsimavr-dev libelf-dev liblo-tools chromium python3-jsonschema python3-websockets
   slurmctld slurmd slurm-client munge procps"
 
 # install_packages NAME…: nothing to do, nothing said; not allowed to, the line to run is printed.

@@ -13,6 +13,16 @@ constexpr PersonFlag kMapFlag = {"--map", "map", "FILE.png"};
 
 }  // namespace
 
+void add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::string& group) {
+  verb.add_option("--map", maps,
+                  "Use another actuator map than the trace's: of a trace of several people, that of person K; repeat "
+                  "for more people")
+      ->group(group)
+      ->type_name("[K=]FILE.png|LAYOUT|none")
+      ->expected(1)
+      ->take_all();
+}
+
 std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts) {
   std::vector<PersonValue> maps = parse_person_values(kMapFlag, texts);
   for (const PersonValue& map : maps)

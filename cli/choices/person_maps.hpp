@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,9 @@
 #include "cli/choices/scene.hpp"
 
 namespace vestige::cli {
+
+/// Adds --map of a verb that replays traces.
+void add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::string& group);
 
 /// Reads the values of --map of a verb that replays traces. Throws `UsageError` as `parse_person_values`.
 std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts);

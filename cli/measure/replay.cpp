@@ -305,13 +305,7 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       "Write the actuators' duties: as CSV, one row per frame, 0 to 255; as MPEG haptics (.hjif); or for bHaptics "
       "(.tact, at most 40 actuators); of person 2 OUT.2.csv")
       ->type_name("OUT.csv|OUT.hjif|OUT.tact|-");
-  verb->add_option("--map", options->maps,
-                   "Use another actuator map than the trace's: of a trace of several people, that of person K; repeat "
-                   "for more people")
-      ->group("Results")
-      ->type_name("[K=]FILE.png|LAYOUT|none")
-      ->expected(1)
-      ->take_all();
+  add_maps_option(*verb, options->maps, "Results");
   verb->add_option(
           "--map-at", options->map_at,
           "Use another actuator map, with as many actuators, from this time of the trace on; repeat for more maps")

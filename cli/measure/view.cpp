@@ -17,6 +17,7 @@
 #include "analysis/view/page_packer.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/law_choice.hpp"
+#include "cli/choices/person_maps.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/measure/replay_check.hpp"
 #include "cli/verbs.hpp"
@@ -37,6 +38,7 @@ struct ViewOptions {
   CommonOptions common;
   DetectorChoice choice;
   LawFlags law;
+  std::vector<std::string> maps;
   std::string trace;
   std::string output;
   bool open = false;
@@ -46,7 +48,7 @@ struct ViewOptions {
 std::string output_path(const ViewOptions& options) {
   if (!options.output.empty()) return options.output;
   if (options.trace == "-")
-    throw UsageError("-o", "a trace from standard input has no name", "name the page: -o PAGE.html");
+    throw UsageError("-o", "a trace from standard input has no name", "name the page: -o OUT.html");
   return std::filesystem::path(options.trace).replace_extension(".html").string();
 }
 
@@ -134,13 +136,17 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   options.law.check();
   if (options.open && output == "-")
     throw UsageError("--open", "a page on standard output has no name", "name a file with -o");
-  check_outputs({output, options.common.json}, {options.trace, options.law.actuator}, options.common);
+  const std::vector<PersonValue> maps = parse_maps(options.maps);
+  std::vector<std::string> inputs = {options.trace, options.law.actuator};
+  for (const PersonValue& map : maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
+  check_outputs({output, options.common.json}, inputs, options.common);
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
   for (std::size_t i = 0; i < trace.people.size(); ++i)
     require_surface(
         trace.people[i].avatar,
         fmt::format("{}, {}", options.trace, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
   require_frames(trace.reader, options.trace);
+  use_maps(maps, trace, options.trace, verbosity);
   const Drives drives = make_drives(options, trace);
   const PeopleDetectors detectors = make_detectors(options.choice.detector, options.choice, trace, planes_of(drives));
   warn_of_radii({detectors.front()->name()}, trace.reader, options.trace, verbosity);
@@ -188,10 +194,11 @@ void add_view(CLI::App& program, Invocation& invocation) {
   verb->add_option(
           "-o,--output", options->output,
           "The page, which needs nothing beside it and no network [default: the trace's name, ending in .html]")
-      ->type_name("PAGE.html|-");
+      ->type_name("OUT.html|-");
   verb->add_flag("--open", options->open, "Open the page in the browser");
   add_detector_and_context(*verb, options->choice);
   add_detector_options(*verb, options->choice);
+  add_maps_option(*verb, options->maps, "Intensity");
   add_law_options(*verb, options->law, "Intensity");
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_view(*options, invocation); });

@@ -38,11 +38,12 @@ class Player {
   start() {
     this.describe();
     this.fillChoices();
-    try {
-      this.scene = new Scene(byId("scene"), this.trace);
+    const renderer = webglRenderer();
+    if (renderer === null) {
+      this.showStills();
+    } else {
+      this.scene = new Scene(byId("scene"), this.trace, renderer);
       this.scene.orbit.addEventListener("change", () => this.redraw());
-    } catch (error) {
-      this.showStills(error);
     }
     this.connect();
     this.resize();
@@ -297,10 +298,10 @@ class Player {
     if (count === 0) byId("motors").append(element("p", "none runs", "soft"));
   }
 
-  showStills(error) {
+  showStills() {
     byId("failure").textContent =
-      `This browser does not draw in three dimensions (WebGL): ${error.message}. So here is a still picture of each frame; ` +
-      "the timeline and all numbers work. WebGL is switched on in the browser's settings for graphics.";
+      "This browser does not draw in three dimensions: it has no WebGL, or it is switched off in the browser's settings. " +
+      "So here is a still picture of each frame; the timeline and all numbers work.";
     byId("failure").hidden = false;
     const still = new Still(byId("scene"), this.trace);
     this.drawStill = () => still.draw(this.time_s, this.stillView || "front");

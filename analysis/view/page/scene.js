@@ -128,20 +128,22 @@ class ColliderShapes {
   }
 }
 
-/** Whether the browser is known to draw without a GPU. */
-function drawsInSoftware() {
+/** Returns what the browser draws with, as far as it tells: "" if it does not, null if it has no WebGL. */
+function webglRenderer() {
   const context = document.createElement("canvas").getContext("webgl");
-  const info = context && context.getExtension("WEBGL_debug_renderer_info");
-  return info !== null && /swiftshader|llvmpipe|software|basic render/i.test(context.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  if (context === null) return null;
+  const info = context.getExtension("WEBGL_debug_renderer_info");
+  return info === null ? "" : context.getParameter(info.UNMASKED_RENDERER_WEBGL);
 }
 
 class Scene {
-  /** Throws if the browser has no WebGL. */
-  constructor(canvas, trace) {
+  /** `renderer`: see `webglRenderer`. */
+  constructor(canvas, trace, renderer) {
     this.trace = trace;
     this.canvas = canvas;
-    // Smooth edges would cost a third of the pictures in a second without a GPU.
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: !drawsInSoftware(), alpha: true});
+    // Without a GPU, smooth edges would cost a third of the pictures in a second.
+    const inSoftware = /swiftshader|llvmpipe|software|basic render/i.test(renderer);
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: !inSoftware, alpha: true});
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(35, 1, 0.05, 500);
     this.orbit = new THREE.OrbitControls(this.camera, canvas);

@@ -1,0 +1,266 @@
+// Pages of `vestige view`, opened in a real browser as a reader does.
+
+#include <cstdlib>
+#include <map>
+#include <sstream>
+
+#include "tests/support/command_line.hpp"
+#include "tests/support/npm.hpp"
+
+namespace vestige {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Gt;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Le;
+using ::testing::Lt;
+using ::testing::Not;
+
+/// The fields of one line of CSV, none of which is quoted.
+using Row = std::vector<std::string>;
+
+class View : public test::CommandLineTest {
+ protected:
+  void SetUp() override {
+    VESTIGE_REQUIRE_DATA("/usr/bin/chromium");
+    VESTIGE_REQUIRE_DATA(test::npm_package("playwright-core"));
+  }
+
+  void make(const std::string& flags, const std::string& record_flags = "--count 40 --duration 0.5") const {
+    const test::Outcome made =
+        run("vestige record -q " + record_flags + " -o t.mcap && vestige view -q t.mcap -o page.html " + flags);
+    ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+  }
+
+  /// Opens a page, does what `options` say (tests/npm/browse_page.mjs), and expects that the browser has nothing to
+  /// complain of and asks for nothing else. Returns what was seen.
+  json browse(const json& options, const std::string& page = "page.html") const {
+    const test::Outcome outcome =
+        run("node '" VESTIGE_SOURCE_DIR "/tests/npm/browse_page.mjs' '" + page + "' '" + options.dump() + "'");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+    json result = json::parse(outcome.standard_output, nullptr, false);
+    EXPECT_THAT(result["complaints"], IsEmpty()) << result;
+    EXPECT_THAT(result["requests"], IsEmpty()) << result;
+    return result["seen"];
+  }
+
+  /// The rows of contacts.csv by frame.
+  std::map<std::int64_t, std::vector<Row>> contacts_by_frame() const {
+    std::map<std::int64_t, std::vector<Row>> rows;
+    std::istringstream file(read_text_file(folder_ / "contacts.csv"));
+    std::string line;
+    for (std::getline(file, line); std::getline(file, line);) {
+      Row row;
+      std::istringstream fields(line);
+      for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
+      rows[std::stoll(row[0])].push_back(row);
+    }
+    return rows;
+  }
+};
+
+const json kSee = {{"see", true}};
+
+json press(const std::string& key) {
+  return {{"press", key}, {"see", true}};
+}
+
+TEST_F(View, DrawsTheBodyAndStandsStillWhereTheReaderWantsNoMotion) {
+  make("");
+  const json seen = browse({{"steps", {kSee, kSee}}});
+  EXPECT_EQ(seen[0]["title"], "t.mcap");
+  EXPECT_THAT(seen[0]["about"].get<std::string>(),
+              AllOf(HasSubstr("500 frames"), HasSubstr("40 colliders"), HasSubstr("detector cpu")));
+  EXPECT_THAT(seen[0]["middle"]["opaque"].get<double>(), Gt(0.2)) << seen;
+  EXPECT_THAT(seen[0]["middle"]["colourful"].get<double>(), Gt(0.04)) << "regions have colours";
+  EXPECT_EQ(seen[0]["failure"], "");
+  EXPECT_THAT(seen[0]["warnings"], IsEmpty());
+  EXPECT_EQ(seen[0]["play"], "Play");
+  EXPECT_EQ(seen[0], seen[1]) << "nothing moves";
+}
+
+TEST_F(View, PlaysToTheEndWhereTheReaderDoesNotMind) {
+  make("", "--count 40 --duration 0.2");
+  const json seen = browse({{"motion", true}, {"steps", {{{"wait_for", "Play"}}, kSee}}});
+  EXPECT_EQ(seen[0]["frame"], 199);
+}
+
+// Every contact is on the page, at its frame, on the skin and at its collider, as exactly as the page says.
+TEST_F(View, ShowsTheContactsOfTheCsv) {
+  make("--json view.json", "--count 100 --duration 1");
+  ASSERT_EQ(run("vestige replay -q t.mcap --contacts contacts.csv --timeline timeline.csv").exit_code, 0);
+  const auto expected = contacts_by_frame();
+  json steps = json::array({{{"gaps", true}}});
+  for (int i = 0; i < 20; ++i) steps.push_back(press("n"));
+  json seen = browse({{"steps", steps}});
+  std::size_t contacts = 0;
+  for (const auto& [frame, rows] : expected) contacts += rows.size();
+  const json error_mm = json_in("view.json")["error_mm"];
+  EXPECT_EQ(seen[0]["contacts"], contacts);
+  EXPECT_THAT(seen[0]["skin"].get<double>(), AllOf(Gt(0), Lt(error_mm["skin"].get<double>())));
+  EXPECT_THAT(seen[0]["collider"].get<double>(),
+              AllOf(Gt(0), Lt(error_mm["skin"].get<double>() + error_mm["colliders"].get<double>())));
+  EXPECT_THAT(error_mm["skin"].get<double>(), Lt(1)) << "a page for the eye";
+  seen.erase(0);
+  auto next = expected.begin();
+  for (const json& page : seen) {
+    ASSERT_NE(next, expected.end());
+    EXPECT_EQ(page["frame"], next->first);
+    ASSERT_EQ(page["contacts"].size(), next->second.size());
+    for (std::size_t i = 0; i < next->second.size(); ++i) {
+      const Row& row = next->second[i];
+      EXPECT_EQ(page["contacts"][i][0], row[2]);
+      EXPECT_EQ(page["contacts"][i][1], row[3]);
+      EXPECT_NEAR(std::stod(page["contacts"][i][2].get<std::string>()), std::stod(row[4]), 0.0006);
+      const std::size_t actuator = std::stoul(row[9]);
+      EXPECT_EQ(page["contacts"][i][3],
+                actuator == 0 ? json("no actuator") : page["actuators"][actuator]);  // after "any"
+    }
+    ++next;
+  }
+}
+
+TEST_F(View, ScrubbingAndJumpingShowAnotherFrame) {
+  make("");
+  ASSERT_EQ(run("vestige replay -q t.mcap --contacts contacts.csv --timeline timeline.csv").exit_code, 0);
+  std::int64_t of_torso = -1;
+  std::string collider;
+  for (const auto& [frame, rows] : contacts_by_frame())
+    for (const Row& row : rows)
+      if (of_torso < 0 && row[9] == "2") std::tie(of_torso, collider) = std::pair(frame, row[2]);
+  ASSERT_GE(of_torso, 0);
+  const json seen = browse({{"steps",
+                             {kSee,
+                              {{"scrub", 300}, {"see", true}},
+                              {{"drag", {"#raster", 0.3, 0.9}}, {"see", true}},
+                              {{"scrub", 0}},
+                              {{"choose", {"#of-actuator", "upper torso, left"}}},
+                              {{"click", "#contact-after"}, {"see", true}},
+                              {{"scrub", 0}},
+                              {{"choose", {"#of-collider", collider}}},
+                              {{"click", "#contact-after"}, {"see", true}}}}});
+  EXPECT_EQ(seen[1]["frame"], 300);
+  EXPECT_EQ(seen[1]["time"], "0.3000 s");
+  EXPECT_NE(seen[1]["picture"]["sum"], seen[0]["picture"]["sum"]);
+  EXPECT_THAT(seen[2]["frame"].get<int>(), AllOf(Gt(400), Lt(490)));
+  EXPECT_EQ(seen[3]["frame"], of_torso);
+  EXPECT_EQ(seen[4]["frame"], of_torso);
+  EXPECT_THAT(seen[4]["motors"], Contains(json({"255", "upper torso, left"})));
+}
+
+TEST_F(View, ObeysTheKeyboard) {
+  make("");
+  json steps = json::array({kSee});
+  for (const char* key :
+       {"End", "Home", "ArrowRight", "Shift+ArrowRight", "ArrowLeft", "[", "]", "2", "1", "b", "b", "g", "c"})
+    steps.push_back(press(key));
+  steps.push_back({{"press", " "}, {"wait_for", "Pause"}});
+  steps.push_back(press(" "));
+  steps.push_back(press("?"));
+  const json seen = browse({{"steps", steps}});
+  EXPECT_EQ(seen[1]["frame"], 499);
+  EXPECT_EQ(seen[2]["frame"], 0);
+  EXPECT_EQ(seen[3]["frame"], 1);
+  EXPECT_EQ(seen[4]["frame"], 11);
+  EXPECT_EQ(seen[5]["frame"], 10);
+  EXPECT_EQ(seen[6]["speed"], "1/2");
+  EXPECT_EQ(seen[7]["speed"], "1");
+  EXPECT_NE(seen[8]["picture"]["sum"], seen[7]["picture"]["sum"]) << "from behind";
+  EXPECT_NE(seen[9]["picture"]["sum"], seen[8]["picture"]["sum"]);
+  EXPECT_THAT(seen[10]["picture"]["opaque"].get<double>(), Lt(seen[9]["picture"]["opaque"].get<double>() / 2));
+  EXPECT_EQ(seen[11]["picture"], seen[9]["picture"]);
+  EXPECT_THAT(seen[12]["picture"]["colourful"].get<double>(), Lt(0.002)) << "no regions";
+  EXPECT_THAT(seen[13]["picture"]["opaque"].get<double>(), Lt(seen[12]["picture"]["opaque"].get<double>()));
+  EXPECT_EQ(seen[14]["play"], "Play");
+  EXPECT_THAT(seen[14]["frame"].get<int>(), Gt(10));
+  EXPECT_EQ(seen[15]["help"], true);
+}
+
+TEST_F(View, NamesStayText) {
+  const std::string name = "<img src=x onerror=alert(1)> <script>'&\".mcap";
+  ASSERT_EQ(run("vestige map make -q --layout paper6 --save-regions r.json -o a.png && "
+                "sed -i 's|upper torso, right|<img src=x onerror=alert(2)>|; s|upper torso, left|</script><!--<b>|' "
+                "r.json && "
+                "vestige map make -q --regions r.json -o b.png && "
+                "vestige record -q --map b.png --count 40 --duration 0.5 -o t.mcap && "
+                "cp t.mcap \"$(cat <<'END'\n" +
+                name + "\nEND\n)\" && vestige view -q -o page.html \"$(cat <<'END'\n" + name + "\nEND\n)\"")
+                .exit_code,
+            0);
+  const json seen = browse({{"steps", {press("n")}}});
+  EXPECT_EQ(seen[0]["title"], name);
+  EXPECT_EQ(seen[0]["tab"], name);
+  EXPECT_EQ(seen[0]["actuators"][1], "<img src=x onerror=alert(2)>");
+  EXPECT_EQ(seen[0]["actuators"][2], "</script><!--<b>");
+  EXPECT_EQ(seen[0]["images"], 0);
+}
+
+TEST_F(View, FitsAPhone) {
+  make("--map torso40");
+  const json seen = browse({{"width", 360}, {"height", 700}, {"steps", {press("n")}}});
+  EXPECT_EQ(seen[0]["width"], 360) << "nothing to scroll sideways";
+  EXPECT_THAT(seen[0]["middle"]["opaque"].get<double>(), Gt(0.2));
+}
+
+TEST_F(View, WithoutWebGlThereAreStills) {
+  make("");
+  const json seen = browse({{"webgl", false}, {"steps", {kSee, press("End"), press("2")}}});
+  EXPECT_THAT(seen[0]["failure"].get<std::string>(), HasSubstr("WebGL"));
+  EXPECT_THAT(seen[0]["middle"]["colourful"].get<double>(), Gt(0.04));
+  EXPECT_EQ(seen[1]["frame"], 499);
+  EXPECT_NE(seen[1]["picture"]["sum"], seen[0]["picture"]["sum"]);
+  EXPECT_NE(seen[2]["picture"]["sum"], seen[1]["picture"]["sum"]);
+}
+
+TEST_F(View, ShowsWhatIsLeftOfADamagedTrace) {
+  ASSERT_EQ(run("vestige record -q --count 40 --duration 1 -o t.mcap && truncate -s -100000 t.mcap").exit_code, 0);
+  const test::Outcome outcome = run("vestige view -q t.mcap -o page.html");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;
+  const json seen = browse({{"steps", {press("End")}}});
+  EXPECT_THAT(seen[0]["warnings"], Not(IsEmpty()));
+  EXPECT_THAT(seen[0]["frame"].get<int>(), AllOf(Gt(50), Lt(999)));
+  EXPECT_THAT(seen[0]["middle"]["opaque"].get<double>(), Gt(0.2));
+}
+
+TEST_F(View, ShowsSceneryOfAnySize) {
+  make("", "--colliders none --duration 0.1");
+  EXPECT_EQ(browse({{"steps", {press("n")}}})[0]["frame"], 0) << "there is no contact to go to";
+  make("--force", "--force --count 1000 --duration 0.05");
+  EXPECT_THAT(browse({{"steps", {press("End")}}})[0]["about"].get<std::string>(), HasSubstr("1,000 colliders"));
+  make("--force", "--force --avatar builtin --name ann --avatar builtin --name bob --at 0,0,0.9,180 --duration 0.1");
+  const json two = browse({{"steps", {kSee}}});
+  EXPECT_THAT(two[0]["middle"]["opaque"].get<double>(), Gt(0.2));
+}
+
+TEST_F(View, PagesAreSmall) {
+  make("--json two.json", "--count 100 --duration 2");
+  EXPECT_THAT(json_in("two.json")["bytes"].get<double>(), Le(4e6));
+  make("--force --json minute.json", "--force --count 100 --duration 60");
+  EXPECT_THAT(json_in("minute.json")["bytes"].get<double>(), Le(25e6));
+}
+
+TEST_F(View, WritesBesideTheTraceOrToStandardOutput) {
+  record_small();
+  ASSERT_EQ(run("vestige view -q small.mcap && vestige view -q small.mcap -o - > b.html").exit_code, 0);
+  EXPECT_EQ(read_text_file(folder_ / "small.html"), read_text_file(folder_ / "b.html"));
+  expect_failure("vestige view small.mcap", 1, {"small.html", "--force"});
+  expect_failure("vestige view small.mcap --open -o -", 2, {"--open", "-o"});
+  expect_failure("vestige view - < small.mcap", 2, {"-o OUT.html"});
+  expect_failure("vestige view none.mcap -o c.html", 1, {"none.mcap"}, "c.html");
+  expect_failure("vestige view small.mcap -o missing/c.html", 1, {"missing"});
+  expect_failure(
+      "vestige record -q --duration 0 -o e.mcap; head -c 100 small.mcap > e.mcap; vestige view e.mcap -o c.html", 1,
+      {"e.mcap"}, "c.html");
+}
+
+TEST(ViewScripts, AreClean) {
+  VESTIGE_REQUIRE_DATA(test::npm_package("eslint"));
+  EXPECT_EQ(test::run_node("lint_page.mjs", VESTIGE_SOURCE_DIR "/analysis/view/page"), "[]\n");
+}
+
+}  // namespace
+}  // namespace vestige
