@@ -69,9 +69,8 @@ foreach(library IN LISTS libraries)
   endif()
   bundle_licence(${CMAKE_MATCH_1})
 endforeach()
-bundle_licence(libjs-three)  # which pages of `vestige view` hold
 # What is compiled into the program.
-foreach(package libcli11-dev nlohmann-json3-dev libglm-dev libeigen3-dev libflatbuffers-dev)
+foreach(package libcli11-dev nlohmann-json3-dev libglm-dev libeigen3-dev libflatbuffers-dev libjs-three)
   bundle_licence(${package})
 endforeach()
 configure_file(${SOURCE}/LICENSE ${BUNDLE}/licences/vestige.txt COPYONLY)

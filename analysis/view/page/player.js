@@ -59,8 +59,8 @@ class Player {
     byId("about").textContent = [
       named(rows, "frame"), named(colliders.id.length, "collider"), named(contacts, "contact"), ...head.about].join(" · ");
     byId("precision").textContent =
-      `Contacts and duties are exact. For the picture, ways are thinned: skin is at most ${head.error_mm.skin} mm from its place ` +
-      `where it was measured, colliders at most ${head.error_mm.colliders} mm. Motion between kept frames is interpolated.`;
+      "Contacts and duties are exact. Poses and the paths of colliders are thinned for the picture: where it was measured, skin " +
+      `is at most ${head.error_mm.skin} mm from its place, and colliders are at most ${head.error_mm.colliders} mm from theirs.`;
     for (const warning of head.warnings) byId("warnings").append(element("li", warning));
     byId("warnings").hidden = head.warnings.length === 0;
   }
@@ -76,9 +76,10 @@ class Player {
     add(byId("of-collider"), "", "any");
     this.trace.colliders.id.forEach((id, i) => add(byId("of-collider"), i, id));
     add(byId("of-actuator"), "", "any");
-    const longest = this.trace.people.reduce((a, b) => (a.info.actuators.length >= b.info.actuators.length ? a : b));
-    longest.info.actuators.forEach((actuator, i) => add(byId("of-actuator"), i + 1, actuator.name));
-    add(byId("of-actuator"), 0, "no actuator");
+    this.trace.people.forEach((person, k) => {
+      person.info.actuators.forEach((_, i) => add(byId("of-actuator"), `${k} ${i + 1}`, person.who + person.actuatorName(i + 1)));
+      add(byId("of-actuator"), `${k} 0`, person.who + person.actuatorName(0));
+    });
     for (const [layer, text, key] of kLayers) this.addLayer(layer, text, key);
     const follow = this.addBox("follow", "Follow the person", "F", true, (on) => { if (this.scene) this.scene.follows = on; });
     follow.title = "Takes the camera along (F)";
@@ -105,34 +106,33 @@ class Player {
     return label;
   }
 
-  /** Key -> what it does and how the help says it. */
+  /** Keys, each with its name, what it does as the help says it, and a function that does it. */
   keys() {
     const click = (id) => () => byId(id).click();
     const seekRow = (row) => () => this.seekRow(row());
-    const table = {
-      " ": ["Space", "play or pause", () => this.toggle()],
-      ArrowLeft: ["←", "one frame back; with shift, ten", (event) => this.step(event.shiftKey ? -10 : -1)],
-      ArrowRight: ["→", "one frame on; with shift, ten", (event) => this.step(event.shiftKey ? 10 : 1)],
-      Home: ["Home", "first frame", seekRow(() => 0)],
-      End: ["End", "last frame", seekRow(() => this.trace.rows - 1)],
-      n: ["N", "next contact", click("contact-after")],
-      p: ["P", "contact before", click("contact-before")],
-      "[": ["[", "slower", () => this.changeSpeed(-1)],
-      "]": ["]", "faster", () => this.changeSpeed(1)],
-      "+": ["+", "less time in the timeline", () => this.raster.zoom(1 / 2, this.time_s)],
-      "-": ["-", "more time in the timeline", () => this.raster.zoom(2, this.time_s)],
-    };
-    Object.keys(kViews).forEach((view, i) => { table[i + 1] = [`${i + 1}`, `from the ${view}`, () => this.look(view)]; });
-    table.f = ["F", "follow the person", click("follow")];
-    for (const [layer, text, key] of kLayers)
-      table[key.toLowerCase()] = [key, `show or hide: ${text.toLowerCase()}`, click(`layer-${layer}`)];
-    table["?"] = ["?", "this help", () => this.help()];
-    return table;
+    return new Map([
+      [" ", ["Space", "play or pause", () => this.toggle()]],
+      ["ArrowLeft", ["←", "one frame back; with shift, ten", (event) => this.step(event.shiftKey ? -10 : -1)]],
+      ["ArrowRight", ["→", "one frame on; with shift, ten", (event) => this.step(event.shiftKey ? 10 : 1)]],
+      ["Home", ["Home", "first frame", seekRow(() => 0)]],
+      ["End", ["End", "last frame", seekRow(() => this.trace.rows - 1)]],
+      ["n", ["N", "next contact", click("contact-after")]],
+      ["p", ["P", "contact before", click("contact-before")]],
+      ["[", ["[", "slower", () => this.changeSpeed(-1)]],
+      ["]", ["]", "faster", () => this.changeSpeed(1)]],
+      ["+", ["+", "less time in the timeline", () => this.raster.zoom(1 / 2, this.time_s)]],
+      ["-", ["-", "more time in the timeline", () => this.raster.zoom(2, this.time_s)]],
+      ...Object.keys(kViews).map((view, i) => [`${i + 1}`, [`${i + 1}`, `from the ${view}`, () => this.look(view)]]),
+      ["f", ["F", "follow the person", click("follow")]],
+      ...kLayers.map(([layer, text, key]) =>
+        [key.toLowerCase(), [key, `show or hide: ${text.toLowerCase()}`, click(`layer-${layer}`)]]),
+      ["?", ["?", "this help", () => this.help()]],
+    ]);
   }
 
   connect() {
     const keys = this.keys();
-    for (const [name, what] of Object.values(keys)) byId("keys").append(tableRow("td", [[name, ""], [what, ""]]));
+    for (const [name, what] of keys.values()) byId("keys").append(tableRow("td", [[name, ""], [what, ""]]));
     document.addEventListener("keydown", (event) => this.press(event, keys));
     const on = (id, act) => byId(id).addEventListener("click", act);
     on("play", () => this.toggle());
@@ -152,9 +152,9 @@ class Player {
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const needs = {SELECT: () => true, BUTTON: () => key === " ", INPUT: () => key === " " && event.target.type === "checkbox"};
     const own = needs[event.target.tagName];
-    if (event.ctrlKey || event.metaKey || event.altKey || byId("help").open || !(key in keys) || (own && own())) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || byId("help").open || !keys.has(key) || (own && own())) return;
     event.preventDefault();
-    keys[key][2](event);
+    keys.get(key)[2](event);
   }
 
   help() { byId("help").showModal(); }
@@ -215,8 +215,11 @@ class Player {
 
   toContact(direction) {
     this.pause();
-    const chosen = (id) => (byId(id).value === "" ? null : Number(byId(id).value));
-    const row = this.trace.rowOfContact(this.row, direction, chosen("of-collider"), chosen("of-actuator"));
+    const [collider, actuator] = [byId("of-collider").value, byId("of-actuator").value];
+    const [person, number] = actuator.split(" ").map(Number);
+    const row = this.trace.rowOfContact(this.row, direction, (of, i) =>
+      (collider === "" || of.contact_collider[i] === Number(collider)) &&
+      (actuator === "" || (of === this.trace.people[person] && of.contact_actuator[i] === number)));
     if (row !== null) this.seekRow(row);
   }
 
@@ -263,7 +266,7 @@ class Player {
 
   contactCells(person, i) {
     const cells = [[`${this.trace.colliders.id[person.contact_collider[i]]}`, "n"], [`${person.contact_triangle[i]}`, "n"],
-                   [person.contact_t[i].toFixed(3), "n"], [person.actuatorName(person.contact_actuator[i]), ""]];
+                   [person.contact_t[i].toFixed(3), "n"], [person.who + person.actuatorName(person.contact_actuator[i]), ""]];
     const at = [...person.contact_position_m.subarray(i * 3, i * 3 + 3)].join(", ");
     cells.title = `t ${person.contact_t[i]}, at ${at} m, side ${person.contact_side[i]}`;
     return cells;
@@ -291,7 +294,7 @@ class Player {
         const duty = person.dutyAt(i, row);
         if (duty === 0) return;
         ++count;
-        if (list.length < kMostListed) list.push([[`${duty}`, "n"], [actuator.name, ""]]);
+        if (list.length < kMostListed) list.push([[`${duty}`, "n"], [person.who + actuator.name, ""]]);
       });
     }
     this.fillTable("motors", [["Duty of 255", "n"], ["Actuator", ""]], list, count);

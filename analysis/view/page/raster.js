@@ -30,11 +30,10 @@ class Raster {
   makeLines() {
     const lines = [];
     for (const person of this.trace.people) {
-      const who = this.trace.people.length > 1 ? `${person.info.name}: ` : "";
       person.info.actuators.forEach((actuator, i) =>
-        lines.push({name: who + actuator.name, colour: actuator.colour, person, number: i + 1}));
+        lines.push({name: person.who + actuator.name, colour: actuator.colour, person, number: i + 1}));
       if (person.contact_actuator.includes(0))
-        lines.push({name: `${who}no actuator`, colour: person.info.unmapped, person, number: 0});
+        lines.push({name: person.who + person.actuatorName(0), colour: person.info.unmapped, person, number: 0});
     }
     return lines;
   }

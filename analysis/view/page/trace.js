@@ -7,6 +7,7 @@ class Person {
   constructor(info, arrays, prefix, scene) {
     this.info = info;
     this.scene = scene;
+    this.who = scene.head.people.length > 1 ? `${info.name}: ` : "";  // goes before the names of actuators
     for (const [name, values] of Object.entries(arrays))
       if (name.startsWith(prefix)) this[name.slice(prefix.length)] = values;
     this.palette = new Float32Array(info.joints * 16);
@@ -155,14 +156,15 @@ class Trace {
   /** The frame that is valid at a time: the last that is not later. */
   rowAt(time_s) { return Math.max(0, lastUpTo(this.time_s, time_s)); }
 
-  /** Returns the nearest row before (-1) or after (+1) `row` with a contact of this collider and actuator; null: of any. */
-  rowOfContact(row, direction, collider, actuator) {
+  /**
+   * Returns the nearest row before (-1) or after (+1) `row` with a contact for which `fits(person, contact)` holds, or null.
+   */
+  rowOfContact(row, direction, fits) {
     let best = null;
     for (const person of this.people) {
       const [first, end] = person.contactsOf(row);
       for (let i = direction > 0 ? end : first - 1; i >= 0 && i < person.contact_row.length; i += direction) {
-        if (collider !== null && person.contact_collider[i] !== collider) continue;
-        if (actuator !== null && person.contact_actuator[i] !== actuator) continue;
+        if (!fits(person, i)) continue;
         const found = person.contact_row[i];
         if (best === null || (found - best) * direction < 0) best = found;
         break;

@@ -234,6 +234,7 @@ TEST_F(View, ShowsSceneryOfAnySize) {
   make("--force", "--force --avatar builtin --name ann --avatar builtin --name bob --at 0,0,0.9,180 --duration 0.1");
   const json two = browse({{"steps", {kSee}}});
   EXPECT_THAT(two[0]["middle"]["opaque"].get<double>(), Gt(0.2));
+  EXPECT_THAT(two[0]["actuators"], AllOf(Contains("ann: upper torso, left"), Contains("bob: no actuator")));
 }
 
 TEST_F(View, PagesAreSmall) {
