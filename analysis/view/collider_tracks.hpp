@@ -34,7 +34,7 @@ class ColliderTracks {
  public:
   static constexpr double kTolerance_m = 0.25e-3;
   /// How far a drawn collider can be from its place in the trace: tolerance and rounding along three axes.
-  static constexpr double kError_mm = 1e3 * 1.7320508 * (kTolerance_m + kPageUnit_m / 2);
+  static constexpr double kError_m = 1.7320508 * (kTolerance_m + kPageUnit_m / 2);
 
   /// `ids`: all colliders of the trace, ascending.
   explicit ColliderTracks(std::span<const std::uint32_t> ids);

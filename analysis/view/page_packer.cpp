@@ -146,13 +146,14 @@ PageContent PagePacker::finish() {
     error_mm = std::max(error_mm, people_[i].poses.largest_error_mm());
   }
   PageContent content;
-  content.head = {{"version", 1},
-                  {"unit_m", kPageUnit_m},
-                  {"origin_m", {origin_m_.x, origin_m_.y, origin_m_.z}},
-                  {"error_mm", {{"skin", tenths_up(error_mm)}, {"colliders", tenths_up(ColliderTracks::kError_mm)}}},
-                  {"people", std::move(people)},
-                  {"arrays", arrays_.table()},
-                  {"bytes", arrays_.byte_count()}};
+  content.head = {
+      {"version", 1},
+      {"unit_m", kPageUnit_m},
+      {"origin_m", {origin_m_.x, origin_m_.y, origin_m_.z}},
+      {"error_mm", {{"skin", tenths_up(error_mm)}, {"colliders", tenths_up(1e3 * ColliderTracks::kError_m)}}},
+      {"people", std::move(people)},
+      {"arrays", arrays_.table()},
+      {"bytes", arrays_.byte_count()}};
   content.data = arrays_.packed();
   return content;
 }

@@ -1,3 +1,4 @@
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
 #include <unistd.h>
@@ -123,8 +124,14 @@ void open_in_browser(const std::string& page, Verbosity verbosity) {
   std::string program = "xdg-open";
   std::string path = std::filesystem::absolute(page).string();
   char* const arguments[] = {program.data(), path.data(), nullptr};
+  // What it prints would stand among our own lines.
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
   pid_t child = 0;
-  const int failure = ::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ);
+  const int failure = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments, environ);
+  ::posix_spawn_file_actions_destroy(&actions);
   if (failure != 0)
     warn(fmt::format("--open: xdg-open cannot be run: {}; open {} in a browser", std::strerror(failure), page),
          verbosity);
@@ -189,7 +196,7 @@ void add_view(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<ViewOptions>();
   CLI::App* verb = add_verb(program, "view", "Write a trace as a web page in which it moves",
                             "  vestige view man.mcap\n"
-                            "  vestige view man.mcap --law speed --open -o page.html\n");
+                            "  vestige view man.mcap --law speed -o page.html\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   verb->add_option(
           "-o,--output", options->output,
