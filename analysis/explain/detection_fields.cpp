@@ -91,6 +91,18 @@ constexpr Field kRun[] = {
     {"contacts", "", "contacts in all frames, on skin with and without an actuator"},
 };
 
+constexpr Field kView[] = {
+    {"trace", "", "the trace that was read"},
+    {"output", "", "the page"},
+    {"detector", "", "the detector that ran"},
+    {"frames", "", "frames of the page"},
+    {"contacts", "", "contacts in all frames, on skin with and without an actuator"},
+    {"bytes", "bytes", "size of the page"},
+    {"error_mm/skin", "mm", "how far skin is drawn from its place, at most"},
+    {"error_mm/colliders", "mm", "how far a collider is drawn from its place, at most"},
+    {"complete", "", "false: the trace is damaged"},
+};
+
 constexpr Field kLaw[] = {
     {"name", "", "intensity law"},
     {"hold_ms", "ms", "how long an actuator runs on after a contact"},
@@ -312,6 +324,10 @@ FieldGroups stream_fields() {
 FieldGroups live_fields() {
   return {{"", kLive},     {"", kRun},          {"", kSent},          {"law", kLaw},
           {"link", kLink}, {"gl", gl_fields()}, {"", origin_fields()}};
+}
+
+FieldGroups view_fields() {
+  return {{"", kView}, {"", origin_fields()}};
 }
 
 FieldGroups vest_check_fields() {

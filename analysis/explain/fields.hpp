@@ -26,6 +26,7 @@ FieldGroups stream_log_fields();
 FieldGroups replay_fields();
 FieldGroups stream_fields();
 FieldGroups live_fields();
+FieldGroups view_fields();
 FieldGroups vest_check_fields();
 
 // Frequency.

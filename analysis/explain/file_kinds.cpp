@@ -30,6 +30,7 @@ std::vector<FileKind> detection_kinds() {
       {"timeline.tact", kJson, "Duties of the actuators, for bHaptics", "vestige replay --timeline OUT.tact",
        tact_fields()},
       {"replay.json", kJson, "A replay", "vestige replay --json OUT.json", replay_fields()},
+      {"view.json", kJson, "A page that shows a trace", "vestige view --json OUT.json", view_fields()},
       {"stream.json", kJson, "A stream to the vest", "vestige stream --json OUT.json", stream_fields()},
       {"stream.csv", kCsv, "What became of each changed state of a stream or a live session",
        "vestige stream --log OUT.csv, vestige live --log OUT.csv", stream_log_fields()},

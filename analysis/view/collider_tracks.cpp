@@ -25,6 +25,8 @@ ColliderTracks::ColliderTracks(std::span<const std::uint32_t> ids)
     : ids_(ids.begin(), ids.end()), tracks_(ids.size()) {}
 
 void ColliderTracks::add(const PageRow& at, const TraceFrame& frame, const glm::dvec3& origin_m) {
+  std::vector<std::uint32_t> jumped = frame.teleported;
+  std::ranges::sort(jumped);
   for (const ColliderSample& collider : frame.colliders) {
     const auto found = std::ranges::lower_bound(ids_, collider.id);
     if (found == ids_.end() || *found != collider.id) continue;
@@ -32,8 +34,7 @@ void ColliderTracks::add(const PageRow& at, const TraceFrame& frame, const glm::
     if (!within_reach(sample.place)) continue;
     Track& track = tracks_[static_cast<std::size_t>(found - ids_.begin())];
     const bool goes_on = !track.keys.empty() && track.last.at.index + 1 == at.index &&
-                         track.last.at.time_s < at.time_s &&
-                         std::ranges::find(frame.teleported, collider.id) == frame.teleported.end();
+                         track.last.at.time_s < at.time_s && !std::ranges::binary_search(jumped, collider.id);
     if (goes_on) {
       extend(track, sample);
     } else {

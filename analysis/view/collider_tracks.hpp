@@ -7,25 +7,12 @@
 #include <glm/vec4.hpp>
 #include <limits>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "analysis/view/page_data.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {
-
-/// Places on a page are whole numbers of this length.
-inline constexpr double kPageUnit_m = 1e-4;
-/// The page leaves out what is farther than this from its origin along an axis.
-inline constexpr double kPageReach_m = 2e5;
-
-/// Where a frame stands: among the frames of the page, among those of the trace, and in time.
-struct PageRow {
-  std::uint32_t row = 0;
-  std::uint64_t index = 0;
-  double time_s = 0;
-};
 
 /// Thins the ways of colliders for the eye. A key is kept where a straight, even motion from the key before would miss
 /// a sample between by more than `kTolerance_m` along an axis. So a collider that flies straight has two keys. Where a

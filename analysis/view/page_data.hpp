@@ -5,11 +5,22 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <string_view>
 #include <type_traits>
 #include <vector>
 
 namespace vestige {
+
+/// Places on a page are whole numbers of this length.
+inline constexpr double kPageUnit_m = 1e-4;
+/// The page leaves out what is farther than this from its origin along an axis.
+inline constexpr double kPageReach_m = 2e5;
+
+/// Where a frame stands: among the frames of the page, among those of the trace, and in time.
+struct PageRow {
+  std::uint32_t row = 0;
+  std::uint64_t index = 0;
+  double time_s = 0;
+};
 
 /// The arrays of a page, as analysis/view/page/data.js reads them. The bytes of all arrays lie one after the other, in
 /// the order of `add`, and are deflated together.
@@ -34,10 +45,11 @@ namespace vestige {
 ///   triangle            u32  three vertices
 ///   map_actuator        u16  the map's texels, row 0 at the top; 0: no actuator
 ///   pose_row            u32  the rows of the poses kept
+///   pose_begins         u8   1: there was no motion here from the pose kept before
 ///   pose_root           i32  x, y, z as key_position
-///   pose_matrix         i16  for each entry of the palette four columns of three numbers, relative to the root: the
-///   first
-///                            three columns in steps of matrix_step[0], the fourth in steps of matrix_step[1]
+///   pose_matrix         i16  for each entry of the palette four columns of three numbers, relative to the root.
+///                            Of entry j, the first three columns are in steps of the head's matrix_step[2 j], the
+///                            fourth in steps of matrix_step[2 j + 1]
 ///   contact_row, contact_collider, contact_triangle u32, contact_t f32, contact_barycentric f64 (u, v),
 ///   contact_position_m f64 (x, y, z in the world), contact_actuator u16, contact_side i8: every contact, exactly
 ///   duty_row u32, duty_actuator u16 (from 0), duty u8: every change of a duty, from 0 at the start

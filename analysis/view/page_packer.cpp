@@ -62,12 +62,22 @@ PagePacker::PagePacker(std::span<const PagePerson> people, std::span<const std::
   }
 }
 
+/// Takes the whole metres nearest to the first thing that has a place.
+void PagePacker::find_origin(const TraceFrame& frame) {
+  std::vector<glm::dvec3> places_m;
+  for (const Pose& pose : frame.poses)
+    if (!pose.nodes.empty()) places_m.push_back(pose.origin_m);
+  for (const ColliderSample& collider : frame.colliders) places_m.push_back(collider.position_m);
+  const auto found = std::ranges::find_if(places_m, [](const glm::dvec3& place_m) {
+    return std::isfinite(place_m.x) && std::isfinite(place_m.y) && std::isfinite(place_m.z);
+  });
+  if (found == places_m.end()) return;
+  origin_m_ = glm::round(*found);
+  has_origin_ = true;
+}
+
 void PagePacker::add(const TraceFrame& frame) {
-  if (frame_index_.empty()) {
-    origin_m_ = glm::round(frame.poses.front().origin_m);
-    for (int axis = 0; axis < 3; ++axis)
-      if (!std::isfinite(origin_m_[axis])) origin_m_[axis] = 0;
-  }
+  if (!has_origin_) find_origin(frame);
   const PageRow at = {static_cast<std::uint32_t>(frame_index_.size()), frame.index, frame.time_s()};
   frame_index_.push_back(static_cast<std::uint32_t>(frame.index));
   time_ns_.push_back(static_cast<double>(frame.time_ns));
@@ -113,7 +123,7 @@ nlohmann::ordered_json PagePacker::finish_person(Person& person, const std::stri
   const ActuatorMap& map = person.who.map;
   add_mesh(arrays_, prefix, person.who.avatar);
   arrays_.add(prefix + "map_actuator", map.actuator, 1);
-  const std::array<double, 2> steps = person.poses.finish(arrays_, prefix);
+  const std::vector<double> steps = person.poses.finish(arrays_, prefix);
   const Contacts& contacts = person.contacts;
   arrays_.add(prefix + "contact_row", contacts.row, 1);
   arrays_.add(prefix + "contact_collider", contacts.collider);
@@ -127,7 +137,7 @@ nlohmann::ordered_json PagePacker::finish_person(Person& person, const std::stri
   arrays_.add(prefix + "duty_actuator", person.duties.actuator);
   arrays_.add(prefix + "duty", person.duties.duty);
   return {{"name", person.who.name},
-          {"facing", to_string(person.who.avatar.facing.axis)},
+          {"facing_deg", person.poses.facing_deg()},
           {"joints", person.who.avatar.palette.size()},
           {"matrix_step", steps},
           {"actuators", actuators_of(map)},

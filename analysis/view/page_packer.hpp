@@ -73,11 +73,13 @@ class PagePacker {
     Duties duties = {};
   };
 
+  void find_origin(const TraceFrame& frame);
   nlohmann::ordered_json finish_person(Person& person, const std::string& prefix);
 
   std::vector<Person> people_;
   ColliderTracks colliders_;
-  glm::dvec3 origin_m_ = glm::dvec3(0);  ///< the whole metres nearest to the first person's first place
+  bool has_origin_ = false;
+  glm::dvec3 origin_m_ = glm::dvec3(0);
   std::vector<std::uint32_t> frame_index_;
   std::vector<double> time_ns_;
   PageArrays arrays_;

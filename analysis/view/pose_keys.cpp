@@ -2,23 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <utility>
 
-#include "detector/skinning.hpp"
+#include "traces/scene/facing.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 
 namespace {
 
-constexpr double kAlmost = 1e-6;  // of a second: times are rounded
-/// The most that a joint turns between kept poses, in radians, about. Half a metre from the joint, the straight way
-/// between them is then 0.6 mm off the arc: 0.5 m * 0.1^2 / 8.
-constexpr double kMostTurn = 0.1;
-constexpr std::size_t kMeasuredAtFirst = 60;
-constexpr std::size_t kMeasuredLater = 60;  // every so many intervals
+constexpr double kAlmost = 1e-6;      // of a second: times are rounded
+constexpr std::size_t kMostOut = 64;  // poses left out in a row: each pose is compared with all of them
 
 bool is_drawable(const glm::dvec3& root_m, const std::vector<glm::dmat4>& palette) {
   for (int axis = 0; axis < 3; ++axis)
@@ -30,22 +27,6 @@ bool is_drawable(const glm::dvec3& root_m, const std::vector<glm::dmat4>& palett
   return true;
 }
 
-/// How far any joint has turned, in radians, about: the largest change in a matrix, in parts of its largest number.
-double turn_between(const std::vector<glm::dmat4>& a, const std::vector<glm::dmat4>& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    double change = 0;
-    double size = std::numeric_limits<double>::min();
-    for (int column = 0; column < 3; ++column)
-      for (int axis = 0; axis < 3; ++axis) {
-        change = std::max(change, std::abs(a[i][column][axis] - b[i][column][axis]));
-        size = std::max(size, std::abs(a[i][column][axis]));
-      }
-    most = std::max(most, change / size);
-  }
-  return most;
-}
-
 /// The vertex as the page skins it, relative to the root.
 glm::dvec3 page_skin(const PageInfluences& influences, const glm::dvec3& position,
                      const std::vector<glm::dmat4>& palette) {
@@ -53,6 +34,10 @@ glm::dvec3 page_skin(const PageInfluences& influences, const glm::dvec3& positio
   for (std::size_t k = 0; k < influences.weight.size(); ++k)
     sum += influences.weight[k] / 65535.0 * glm::dvec3(palette[influences.palette[k]] * glm::dvec4(position, 1));
   return sum;
+}
+
+std::size_t influence_count(const Influences& influences) {
+  return static_cast<std::size_t>(std::ranges::count_if(influences.weight, [](float weight) { return weight > 0; }));
 }
 
 }  // namespace
@@ -76,87 +61,134 @@ PageInfluences page_influences(const Influences& influences) {
   return page;
 }
 
-PoseKeys::PoseKeys(const Avatar& avatar) : avatar_(avatar) {
+PoseKeys::PoseKeys(const Avatar& avatar) : avatar_(avatar), reach_(avatar.palette.size()) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<glm::dvec3> low(reach_.size(), glm::dvec3(kInfinity));
+  std::vector<glm::dvec3> high(reach_.size(), glm::dvec3(-kInfinity));
   influences_.reserve(avatar.influences.size());
-  for (const Influences& influences : avatar.influences) influences_.push_back(page_influences(influences));
+  for (std::size_t vertex = 0; vertex < avatar.influences.size(); ++vertex) {
+    const Influences& influences = avatar.influences[vertex];
+    influences_.push_back(page_influences(influences));
+    const std::size_t count = influence_count(influences);
+    if (count > influences_.back().weight.size()) cut_.push_back(vertex);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t entry = influences.palette[k];
+      low[entry] = glm::min(low[entry], glm::dvec3(avatar.position_bind[vertex]));
+      high[entry] = glm::max(high[entry], glm::dvec3(avatar.position_bind[vertex]));
+    }
+  }
+  for (std::size_t entry = 0; entry < reach_.size(); ++entry)
+    if (low[entry].x <= high[entry].x)
+      reach_[entry] = {(low[entry] + high[entry]) / 2.0, (high[entry] - low[entry]) / 2.0};
 }
 
-bool PoseKeys::take(const PageRow& at, const Pose& pose, const glm::dvec3& origin_m) {
-  if (pose.nodes.empty()) return false;
+std::optional<PoseKeys::Posed> PoseKeys::take(const PageRow& at, const Pose& pose, const glm::dvec3& origin_m) const {
+  if (pose.nodes.empty()) return std::nullopt;
   std::vector<glm::dmat4> world;
   world_matrices(avatar_, pose, world);
   const glm::dvec3 root = world[static_cast<std::size_t>(avatar_.root_node)][3];
-  now_.at = at;
-  now_.root_m = pose.origin_m + root - origin_m;
-  palette_matrices(avatar_, pose, now_.palette);
-  for (glm::dmat4& matrix : now_.palette) matrix[3] -= glm::dvec4(root, 0);
-  return is_drawable(now_.root_m, now_.palette);
+  Posed posed = {at, pose.origin_m + root - origin_m, {}};
+  palette_matrices(avatar_, pose, posed.palette);
+  for (glm::dmat4& matrix : posed.palette) matrix[3] -= glm::dvec4(root, 0);
+  if (!is_drawable(posed.root_m, posed.palette)) return std::nullopt;
+  return posed;
 }
 
 void PoseKeys::add(const PageRow& at, const Pose& pose, const glm::dvec3& origin_m) {
-  if (!take(at, pose, origin_m)) return;
-  const double passed_s = at.time_s - kept_.at.time_s;
-  const std::uint64_t before = last_ ? last_->at.index : kept_.at.index;
-  const bool is_first = rows_.empty();
-  const bool after_gap = !is_first && at.index != before + 1;
-  const double share =  // of what may lie between two kept poses
-      is_first ? 1 : std::max((passed_s + kAlmost) * kRate_hz, turn_between(kept_.palette, now_.palette) / kMostTurn);
-  if (after_gap && last_) keep(*std::exchange(last_, {}));
-  if (is_first || after_gap || share >= 1) {
-    if (!is_first && !after_gap && middle_) measure(kept_, now_);
-    keep(now_);
-    last_.reset();
-  } else {
-    if (!middle_ && share >= 0.5) middle_ = now_;
-    last_ = now_;
+  std::optional<Posed> taken = take(at, pose, origin_m);
+  if (!taken) return;
+  Posed now = std::move(*taken);
+  const PageRow& before = since_.empty() ? kept_.at : since_.back().at;
+  if (rows_.empty() || now.at.index != before.index + 1 || now.at.row != before.row + 1) {
+    end_stretch();
+    keep(std::move(now), true);
+    return;
   }
+  double thinned_m = thinning_m(now);
+  if (thinned_m > kTolerance_m) {
+    end_stretch();
+    thinned_m = 0;
+  }
+  since_.push_back(std::move(now));
+  since_m_ = thinned_m;
+  if (at.time_s - kept_.at.time_s >= 1 / kRate_hz - kAlmost || since_.size() >= kMostOut) end_stretch();
 }
 
-void PoseKeys::keep(const Posed& posed) {
+/// How far any vertex would move, at most, in the poses after the one kept last, if the next one kept were `end`.
+double PoseKeys::thinning_m(const Posed& end) const {
+  double largest_m = 0;
+  const double span_s = end.at.time_s - kept_.at.time_s;
+  for (const Posed& pose : since_) {
+    const double part = span_s > 0 ? (pose.at.time_s - kept_.at.time_s) / span_s : 0;
+    const glm::dvec3 moved_m = kept_.root_m * (1 - part) + end.root_m * part - pose.root_m;
+    for (std::size_t i = 0; i < reach_.size(); ++i) {
+      const glm::dmat4 change = kept_.palette[i] * (1 - part) + end.palette[i] * part - pose.palette[i];
+      double error_m = glm::length(moved_m + glm::dvec3(change[3]) + glm::dmat3(change) * reach_[i].middle_m);
+      for (int axis = 0; axis < 3; ++axis) error_m += glm::length(glm::dvec3(change[axis])) * reach_[i].half_m[axis];
+      largest_m = std::max(largest_m, error_m);
+    }
+  }
+  return largest_m;
+}
+
+/// Keeps the last pose since the one kept last.
+void PoseKeys::end_stretch() {
+  if (since_.empty()) return;
+  thinned_m_ = std::max(thinned_m_, std::exchange(since_m_, 0));
+  Posed last = std::move(since_.back());
+  since_.clear();
+  keep(std::move(last), false);
+}
+
+void PoseKeys::keep(Posed posed, bool begins) {
+  if (rows_.empty()) {
+    const glm::dvec3 ahead = forward_of(avatar_.facing.axis);
+    for (const glm::dmat4& matrix : posed.palette) looks_ += glm::dmat3(matrix) * ahead;
+  }
   rows_.push_back(posed.at.row);
+  begins_.push_back(begins ? 1 : 0);
   for (int axis = 0; axis < 3; ++axis)
     roots_.push_back(static_cast<std::int32_t>(std::lround(posed.root_m[axis] / kPageUnit_m)));
   for (const glm::dmat4& matrix : posed.palette)
     for (int column = 0; column < 4; ++column)
       for (int axis = 0; axis < 3; ++axis) matrices_.push_back(static_cast<float>(matrix[column][axis]));
-  kept_ = posed;
-  middle_.reset();
+  if (rows_.size() == 1)
+    for (std::size_t vertex = 0; vertex < influences_.size(); ++vertex) measure_cut(vertex, posed);
+  else
+    for (const std::size_t vertex : cut_) measure_cut(vertex, posed);
+  kept_ = std::move(posed);
 }
 
-void PoseKeys::measure(const Posed& before, const Posed& after) {
-  if (++intervals_ > kMeasuredAtFirst && intervals_ % kMeasuredLater != 0) return;
-  const double part = (middle_->at.time_s - before.at.time_s) / (after.at.time_s - before.at.time_s);
-  std::vector<glm::dmat4> between(before.palette.size());
-  for (std::size_t i = 0; i < between.size(); ++i)
-    between[i] = before.palette[i] * (1 - part) + after.palette[i] * part;
-  const glm::dvec3 moved_m = before.root_m * (1 - part) + after.root_m * part - middle_->root_m;
-  for (std::size_t vertex = 0; vertex < influences_.size(); ++vertex) {
-    const glm::dvec3 drawn = moved_m + page_skin(influences_[vertex], avatar_.position_bind[vertex], between);
-    const double error_m = glm::distance(drawn, skin_vertex(avatar_, middle_->palette, vertex));
-    largest_error_m_ = std::max(largest_error_m_, error_m);
-  }
+void PoseKeys::measure_cut(std::size_t vertex, const Posed& posed) {
+  const glm::dvec3 drawn = page_skin(influences_[vertex], avatar_.position_bind[vertex], posed.palette);
+  cut_m_ = std::max(cut_m_, glm::distance(drawn, skin_vertex(avatar_, posed.palette, vertex)));
 }
 
-/// How far the steps of the numbers can move a vertex.
-double PoseKeys::rounding_m(const std::array<double, 2>& steps) const {
-  const glm::dvec3 extent_m = bind_extent_m(avatar_);
-  return std::sqrt(3.0) * (steps[0] * (extent_m.x + extent_m.y + extent_m.z) + steps[1] + kPageUnit_m) / 2;
+double PoseKeys::facing_deg() const {
+  const bool stands = std::hypot(looks_.x, looks_.z) > 0;
+  const glm::dvec3 looks = stands ? looks_ : glm::dvec3(forward_of(avatar_.facing.axis));
+  return std::atan2(looks.x, looks.z) * 57.29577951308232;
 }
 
-std::array<double, 2> PoseKeys::finish(PageArrays& arrays, const std::string& prefix) {
-  if (last_) keep(*std::exchange(last_, {}));
+std::vector<double> PoseKeys::finish(PageArrays& arrays, const std::string& prefix) {
+  end_stretch();
   const std::size_t size = 12 * avatar_.palette.size();
-  const auto step_of = [&](std::size_t i) { return static_cast<std::size_t>(i % 12 < 9 ? 0 : 1); };
-  std::array<double, 2> steps = {std::numeric_limits<double>::min(), std::numeric_limits<double>::min()};
+  const auto step_of = [&](std::size_t i) { return 2 * (i % size / 12) + (i % 12 < 9 ? 0 : 1); };
+  std::vector<double> steps(2 * avatar_.palette.size(), std::numeric_limits<double>::min());
   for (std::size_t i = 0; i < matrices_.size(); ++i)
     steps[step_of(i)] = std::max(steps[step_of(i)], std::abs(static_cast<double>(matrices_[i])) / 32767);
   std::vector<std::int16_t> stored(matrices_.size());
   for (std::size_t i = 0; i < stored.size(); ++i)
     stored[i] = static_cast<std::int16_t>(std::lround(static_cast<double>(matrices_[i]) / steps[step_of(i)]));
+  for (std::size_t i = 0; i < reach_.size(); ++i) {
+    const glm::dvec3 farthest_m = glm::abs(reach_[i].middle_m) + reach_[i].half_m;
+    const double along_m = steps[2 * i] * (farthest_m.x + farthest_m.y + farthest_m.z) + steps[2 * i + 1] + kPageUnit_m;
+    rounded_m_ = std::max(rounded_m_, std::sqrt(3.0) * along_m / 2);
+  }
   arrays.add(prefix + "pose_row", rows_, 1);
+  arrays.add(prefix + "pose_begins", begins_);
   arrays.add(prefix + "pose_root", roots_, 3);
   arrays.add(prefix + "pose_matrix", stored, size);
-  largest_error_m_ += rounding_m(steps);
   return steps;
 }
 

@@ -5,12 +5,10 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "analysis/view/collider_tracks.hpp"
 #include "analysis/view/page_data.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/pose.hpp"
@@ -24,23 +22,26 @@ struct PageInfluences {
 };
 PageInfluences page_influences(const Influences& influences);
 
-/// Thins a person's poses for the eye. It keeps 60 in a second, more where a joint turns fast, and the first and the
-/// last of every stretch without a gap. It compares the skin half-way between kept poses with the trace's own: often at
-/// first, later now and then.
+/// Thins a person's poses for the eye. It leaves a pose out where a straight, even motion of the palette between the
+/// poses kept takes no vertex farther than `kTolerance_m` from its place, but it keeps 60 poses in a second. Where the
+/// trace has a gap or a pose that cannot be drawn, a new motion begins.
 class PoseKeys {
  public:
   static constexpr double kRate_hz = 60;
+  static constexpr double kTolerance_m = 1e-3;
 
   /// Keeps a reference to the avatar.
   explicit PoseKeys(const Avatar& avatar);
 
   /// Takes the next frame's pose. One that is missing, not finite or out of the page's reach is left out.
   void add(const PageRow& at, const Pose& pose, const glm::dvec3& origin_m);
-  /// Adds the arrays pose_… of `PageArrays` and returns `matrix_step`. `prefix` goes before the names.
-  std::array<double, 2> finish(PageArrays& arrays, const std::string& prefix);
+  /// Adds the arrays pose_… of `PageArrays`. Returns the steps of `pose_matrix`: of each entry of the palette two.
+  std::vector<double> finish(PageArrays& arrays, const std::string& prefix);
 
-  /// How far any vertex was drawn from its place where it was measured. Final after `finish`.
-  double largest_error_mm() const { return 1e3 * largest_error_m_; }
+  /// How far any vertex is drawn from its place in any frame, at most. Final after `finish`.
+  double largest_error_mm() const { return 1e3 * (thinned_m_ + cut_m_ + rounded_m_); }
+  /// Where the person looks in the first pose, as an angle about +Y in degrees: 0 along +z, 90 along +x.
+  double facing_deg() const;
 
  private:
   struct Posed {
@@ -48,23 +49,33 @@ class PoseKeys {
     glm::dvec3 root_m = glm::dvec3(0);  ///< from the page's origin
     std::vector<glm::dmat4> palette;    ///< relative to the root
   };
+  /// The box around the vertices in the bind pose that an entry of the palette moves.
+  struct Reach {
+    glm::dvec3 middle_m = glm::dvec3(0);
+    glm::dvec3 half_m = glm::dvec3(0);
+  };
 
-  bool take(const PageRow& at, const Pose& pose, const glm::dvec3& origin_m);
-  void keep(const Posed& posed);
-  void measure(const Posed& before, const Posed& after);
-  double rounding_m(const std::array<double, 2>& steps) const;
+  std::optional<Posed> take(const PageRow& at, const Pose& pose, const glm::dvec3& origin_m) const;
+  void keep(Posed posed, bool begins);
+  void end_stretch();
+  double thinning_m(const Posed& end) const;
+  void measure_cut(std::size_t vertex, const Posed& posed);
 
   const Avatar& avatar_;
   std::vector<PageInfluences> influences_;
-  Posed now_;
-  Posed kept_;
-  std::optional<Posed> middle_;  ///< the first pose half-way to the next key
-  std::optional<Posed> last_;    ///< the pose before `now_`, unless it was kept
+  std::vector<std::size_t> cut_;  ///< the vertices with more influences than a page draws
+  std::vector<Reach> reach_;      ///< of each entry of the palette
+  Posed kept_;                    ///< the pose kept last
+  std::vector<Posed> since_;      ///< the poses after it, all of the same stretch
+  double since_m_ = 0;            ///< how far the last of them, if kept, would move a vertex in one before it
   std::vector<std::uint32_t> rows_;
+  std::vector<std::uint8_t> begins_;
   std::vector<std::int32_t> roots_;
   std::vector<float> matrices_;
-  std::size_t intervals_ = 0;
-  double largest_error_m_ = 0;
+  glm::dvec3 looks_ = glm::dvec3(0);
+  double thinned_m_ = 0;
+  double cut_m_ = 0;  ///< by fewer and rounded influences
+  double rounded_m_ = 0;
 };
 
 }  // namespace vestige

@@ -20,6 +20,7 @@ void add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::
       ->group(group)
       ->type_name("[K=]FILE.png|LAYOUT|none")
       ->expected(1)
+      ->allow_extra_args(false)
       ->take_all();
 }
 

@@ -86,12 +86,11 @@ void warn_of_gaps(const ReplayResult& result, const OpenTrace& trace, const std:
          verbosity);
   for (std::size_t i = 0; i < result.people.size(); ++i) {
     const PersonResult& person = result.people[i];
-    if (!person.first_non_finite) continue;
+    const std::string note =
+        describe_non_finite(person.non_finite_frames, person.non_finite_segments, person.first_non_finite);
+    if (note.empty()) continue;
     const std::string who = trace.people.size() > 1 ? fmt::format("{}: ", trace.people[i].name) : "";
-    warn(fmt::format(
-             "{}: {}{} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
-             options.trace, who, person.non_finite_frames, person.non_finite_segments, *person.first_non_finite),
-         verbosity);
+    warn(fmt::format("{}: {}{}", options.trace, who, note), verbosity);
   }
 }
 

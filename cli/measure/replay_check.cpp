@@ -13,6 +13,12 @@
 
 namespace vestige::cli {
 
+std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first) {
+  if (!first) return "";
+  return fmt::format("{} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
+                     frames, segments, *first);
+}
+
 PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice, const OpenTrace& trace,
                                PlaneSet planes) {
   SharedContext context(choice.context, choice.device);

@@ -15,6 +15,9 @@ namespace vestige::cli {
 PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice, const OpenTrace& trace,
                                PlaneSet planes);
 
+/// Says which poses and segments were not finite, and so fired nothing. Returns "" if all were finite.
+std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first);
+
 /// What --verify names: another detector, or a file that an earlier replay wrote. Without --verify, nothing.
 struct Verification {
   std::unique_ptr<DetectorTeam> detectors;

@@ -50,7 +50,9 @@ std::string output_path(const ViewOptions& options) {
   if (!options.output.empty()) return options.output;
   if (options.trace == "-")
     throw UsageError("-o", "a trace from standard input has no name", "name the page: -o OUT.html");
-  return std::filesystem::path(options.trace).replace_extension(".html").string();
+  std::filesystem::path page = options.trace;
+  if (page.extension() == ".mcap") page.replace_extension();
+  return page.string() + ".html";
 }
 
 /// The drive of each person's motors; empty for a person without an actuator.
@@ -76,9 +78,9 @@ PlaneSet planes_of(const Drives& drives) {
   return planes;
 }
 
-/// Reads the whole trace into `packer`.
-void pack_frames(OpenTrace& trace, const PeopleDetectors& detectors, const Drives& drives, PagePacker& packer,
-                 const ViewOptions& options) {
+/// Reads the whole trace into `packer`. Returns sentences about what is not finite.
+std::vector<std::string> pack_frames(OpenTrace& trace, const PeopleDetectors& detectors, const Drives& drives,
+                                     PagePacker& packer, const ViewOptions& options) {
   const std::vector<std::uint32_t> ids = trace.reader.collider_ids();
   std::vector<DetectedPerson> people;
   std::vector<std::unique_ptr<ActuatorDrive>> running(drives.size());
@@ -100,6 +102,15 @@ void pack_frames(OpenTrace& trace, const PeopleDetectors& detectors, const Drive
     }
     if (!progress.update(++done / total)) throw Error(options.trace, "writing the page was stopped", "");
   }
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    const FrameBuilder& built = run.builder(i);
+    const std::string note =
+        describe_non_finite(built.non_finite_frames(), built.non_finite_segments(), built.first_non_finite());
+    const std::string who = people.size() > 1 ? fmt::format("{}: ", trace.people[i].name) : "";
+    if (!note.empty()) notes.push_back(who + note);
+  }
+  return notes;
 }
 
 /// What the page says below its title.
@@ -162,10 +173,12 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   std::vector<PagePerson> people;
   for (const TracedPerson& person : trace.people) people.push_back({person.name, person.avatar, person.map});
   PagePacker packer(people, trace.reader.collider_ids());
-  pack_frames(trace, detectors, drives, packer, options);
+  const std::vector<std::string> notes = pack_frames(trace, detectors, drives, packer, options);
   PageContent content = packer.finish();
   content.head["about"] = about(options, detectors, drives);
-  content.head["warnings"] = damage_of(trace.reader, options.trace);
+  std::vector<std::string> warnings = damage_of(trace.reader, options.trace);
+  warnings.insert(warnings.end(), notes.begin(), notes.end());
+  content.head["warnings"] = std::move(warnings);
   const std::string title = options.trace == "-" ? "trace" : std::filesystem::path(options.trace).filename().string();
   const std::string page = make_page(title, content);
   OutputFile file(output, options.common.overwrite());
@@ -187,6 +200,10 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
                                                {"complete", trace.reader.complete()}}),
              options.common);
   invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
+  for (const std::string& note : notes) {
+    warn(fmt::format("{}: {}", options.trace, note), verbosity);
+    invocation.exit_code = kDataLost;
+  }
   if (options.open) open_in_browser(output, verbosity);
 }
 

@@ -78,8 +78,10 @@ const deeds = {
     await page.mouse.up();
   },
   wait_for: (text) => page.waitForFunction((play) => document.getElementById("play").textContent === play, text),
+  run: (script) => page.evaluate(script),
   picture: (file) => page.screenshot({ path: file }),
   gaps: async () => seen.push(await page.evaluate(contactGaps)),
+  see_timeline: async () => seen.push(await page.evaluate(() => [window.vestige.raster.from_s, window.vestige.raster.to_s])),
   see: async () => seen.push(await page.evaluate(look)),
 };
 for (const step of options.steps ?? [{ see: true }])

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { ESLint } from "eslint";
 
 const kScripts = ["data", "trace", "body", "scene", "still", "raster", "player"];
-const kGlobals = ["document", "window", "THREE", "Blob", "DecompressionStream", "Response", "atob", "getComputedStyle", "requestAnimationFrame"];
+const kGlobals = ["document", "window", "THREE", "Blob", "DecompressionStream", "Response", "atob", "getComputedStyle", "requestAnimationFrame", "cancelAnimationFrame", "Element"];
 
 const rules = {
   "no-undef": "error", "no-unused-vars": "error", "no-redeclare": "error", "prefer-const": "error", "no-var": "error", eqeqeq: "error",

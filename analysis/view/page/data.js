@@ -30,8 +30,8 @@ function bytesOfBase64(text) {
 /** Returns the head, and the arrays by their names. */
 async function readPage() {
   const head = JSON.parse(document.getElementById("head").textContent);
-  if (typeof DecompressionStream === "undefined")
-    throw new Error("This browser is too old to unpack the page: use Chromium 80, Firefox 113, Safari 16.4 or later.");
+  if (typeof DecompressionStream === "undefined" || !Element.prototype.replaceChildren)
+    throw new Error("This browser is too old for the page: use Chromium 86, Firefox 113, Safari 16.4 or later.");
   const packed = new Blob([bytesOfBase64(document.getElementById("data").textContent)]);
   const stream = packed.stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());

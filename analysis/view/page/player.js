@@ -28,6 +28,7 @@ class Player {
   constructor(trace) {
     this.trace = trace;
     this.time_s = trace.first_s;
+    this.row = 0;  // of the frame shown: several may have the same time
     this.isPlaying = false;
     this.scene = null;  // null: no WebGL
     this.raster = new Raster(byId("raster"), trace, (time_s) => this.seek(time_s));
@@ -47,10 +48,9 @@ class Player {
     }
     this.connect();
     this.resize();
+    if (this.scene) this.look("front");
     if (!window.matchMedia("(prefers-reduced-motion: reduce)").matches && this.scene !== null) this.play();
   }
-
-  get row() { return this.trace.rowAt(this.time_s); }
 
   describe() {
     const {head, rows, people, colliders} = this.trace;
@@ -59,8 +59,8 @@ class Player {
     byId("about").textContent = [
       named(rows, "frame"), named(colliders.id.length, "collider"), named(contacts, "contact"), ...head.about].join(" · ");
     byId("precision").textContent =
-      "Contacts and duties are exact. Poses and the paths of colliders are thinned for the picture: where it was measured, skin " +
-      `is at most ${head.error_mm.skin} mm from its place, and colliders are at most ${head.error_mm.colliders} mm from theirs.`;
+      "Contacts and duties are exact. Poses and the paths of colliders are thinned for the picture: skin is at most " +
+      `${head.error_mm.skin} mm from its place, and colliders are at most ${head.error_mm.colliders} mm from theirs.`;
     for (const warning of head.warnings) byId("warnings").append(element("li", warning));
     byId("warnings").hidden = head.warnings.length === 0;
   }
@@ -141,10 +141,14 @@ class Player {
     on("contact-before", () => this.toContact(-1));
     on("contact-after", () => this.toContact(1));
     on("help-button", () => this.help());
+    on("timeline-wider", () => this.raster.zoom(2, this.time_s));
+    on("timeline-closer", () => this.raster.zoom(1 / 2, this.time_s));
     for (const button of document.querySelectorAll("[data-view]"))
       button.addEventListener("click", () => this.look(button.dataset.view));
     byId("scrubber").addEventListener("input", () => this.seekRow(Number(byId("scrubber").value)));
+    for (const select of document.querySelectorAll("select")) select.addEventListener("change", () => select.blur());
     window.addEventListener("resize", () => this.resize());
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.resize());
   }
 
   /** Keys that an element with the focus needs itself stay its own. */
@@ -152,7 +156,8 @@ class Player {
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     const needs = {SELECT: () => true, BUTTON: () => key === " ", INPUT: () => key === " " && event.target.type === "checkbox"};
     const own = needs[event.target.tagName];
-    if (event.ctrlKey || event.metaKey || event.altKey || byId("help").open || !keys.has(key) || (own && own())) return;
+    const written = event.getModifierState("AltGraph");  // as "[" is on some keyboards
+    if (((event.ctrlKey || event.altKey) && !written) || event.metaKey || byId("help").open || !keys.has(key) || (own && own())) return;
     event.preventDefault();
     keys.get(key)[2](event);
   }
@@ -176,37 +181,48 @@ class Player {
   }
 
   play() {
-    if (this.time_s >= this.trace.last_s) this.time_s = this.trace.first_s;
+    if (this.time_s >= this.trace.last_s) this.moveTo(this.trace.first_s);
     this.isPlaying = true;
     byId("play").textContent = "Pause";
     let before_ms = null;
     const tick = (now_ms) => {
-      if (!this.isPlaying) return;
       if (before_ms !== null) this.advance((now_ms - before_ms) / 1000);
       before_ms = now_ms;
-      requestAnimationFrame(tick);
+      if (this.isPlaying) this.ticking = requestAnimationFrame(tick);
     };
-    requestAnimationFrame(tick);
+    this.ticking = requestAnimationFrame(tick);
   }
 
   /** `passed_s` of the reader's time have passed. A page that was hidden does not jump. */
   advance(passed_s) {
-    this.time_s = Math.min(this.trace.last_s, this.time_s + Math.min(0.25, passed_s) * Number(byId("speed").value));
+    this.moveTo(this.time_s + Math.min(0.25, passed_s) * Number(byId("speed").value));
     this.draw();
     if (this.time_s >= this.trace.last_s) this.pause();
   }
 
   pause() {
+    if (!this.isPlaying) return;
+    cancelAnimationFrame(this.ticking);
     this.isPlaying = false;
     byId("play").textContent = "Play";
-  }
-
-  seek(time_s) {
-    this.time_s = Math.min(this.trace.last_s, Math.max(this.trace.first_s, time_s));
     this.redraw();
   }
 
-  seekRow(row) { this.seek(this.trace.time_s[Math.min(this.trace.rows - 1, Math.max(0, row))]); }
+  moveTo(time_s) {
+    this.time_s = Math.min(this.trace.last_s, Math.max(this.trace.first_s, time_s));
+    this.row = this.trace.rowAt(this.time_s);
+  }
+
+  seek(time_s) {
+    this.moveTo(time_s);
+    this.redraw();
+  }
+
+  seekRow(row) {
+    this.row = Math.min(this.trace.rows - 1, Math.max(0, row));
+    this.time_s = this.trace.time_s[this.row];
+    this.redraw();
+  }
 
   step(frames) {
     this.pause();
@@ -252,6 +268,7 @@ class Player {
   showNumbers(row) {
     byId("frame").textContent = `${this.trace.frame[row]}`;
     byId("scrubber").value = row;
+    byId("scrubber").setAttribute("aria-valuetext", `frame ${this.trace.frame[row]}`);
     const contacts = [];
     let count = 0;
     for (const person of this.trace.people) {

@@ -22,7 +22,8 @@ class Raster {
     canvas.addEventListener("pointermove", (event) => { if (canvas.hasPointerCapture(event.pointerId)) drag(event); });
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
-      this.zoom(Math.exp(event.deltaY / 400), this.timeAt(event.offsetX));
+      if (event.deltaX !== 0) this.pan(event.deltaX);
+      else this.zoom(Math.exp(event.deltaY / 400), this.timeAt(event.offsetX));
     }, {passive: false});
   }
 
@@ -67,10 +68,21 @@ class Raster {
     const whole_s = Math.max(last_s - first_s, 1e-6);
     const span_s = Math.min(whole_s, Math.max(whole_s * 1e-4, (this.to_s - this.from_s) * factor));
     const share = (time_s - this.from_s) / (this.to_s - this.from_s);
-    this.from_s = Math.min(last_s - span_s, Math.max(first_s, time_s - share * span_s));
+    this.show(time_s - share * span_s, span_s);
+  }
+
+  /** Moves the time shown by a number of pixels. */
+  pan(by_px) {
+    const span_s = this.to_s - this.from_s;
+    this.show(this.from_s + by_px / (this.width - this.left - 4) * span_s, span_s);
+  }
+
+  /** Shows `span_s` from `from_s` on, or from the nearest time at which the trace lasts as long. */
+  show(from_s, span_s) {
+    this.from_s = Math.min(this.trace.last_s - span_s, Math.max(this.trace.first_s, from_s));
     this.to_s = this.from_s + span_s;
     this.paint();
-    this.draw(this.shown_s);
+    this.drawCursor();
   }
 
   paint() {
@@ -131,19 +143,21 @@ class Raster {
     }
   }
 
-  /** Draws the picture with the cursor. A cursor that leaves the time shown takes it along. */
+  /** Moves the cursor. One that leaves the time shown takes it along. */
   draw(time_s) {
+    const moved = time_s !== this.shown_s;
     this.shown_s = time_s;
-    if (time_s < this.from_s || time_s > this.to_s) {
-      const span_s = this.to_s - this.from_s;
-      this.from_s = Math.min(this.trace.last_s - span_s, Math.max(this.trace.first_s, time_s - 0.1 * span_s));
-      this.to_s = this.from_s + span_s;
-      this.paint();
-    }
+    const span_s = this.to_s - this.from_s;
+    if (moved && (time_s < this.from_s || time_s > this.to_s)) this.show(time_s - 0.1 * span_s, span_s);
+    else this.drawCursor();
+  }
+
+  drawCursor() {
     const context = this.canvas.getContext("2d");
     context.clearRect(0, 0, this.width, this.height);
     context.drawImage(this.picture, 0, 0, this.width, this.height);
     context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--accent");
-    context.fillRect(Math.round(this.xAt(time_s)) - 1, 0, 2, this.height);
+    const x = Math.round(this.xAt(this.shown_s));
+    if (x >= this.left) context.fillRect(x - 1, 0, 2, this.height);
   }
 }

@@ -7,7 +7,6 @@ const kFade_s = 0.15;        // of the trace's time
 const kMostMarks = 1024;     // the newest are drawn
 const kPointRadius_m = 0.008;  // how a collider without a radius is drawn
 const kViews = {front: 0, left: 90, back: 180, right: 270};  // degrees about +Y, from where the person looks
-const kFacings = {"+z": 0, "+x": 90, "-z": 180, "-x": 270};
 
 const kMarkVertexShader = `
 attribute float age;
@@ -157,13 +156,13 @@ class Scene {
     this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, 0.6), this.colliders.balls, this.colliders.trails,
                    this.marks.mesh, ...this.bodies.map((body) => body.mesh));
     this.frameBodies();
-    this.look("front");
+    canvas.addEventListener("webglcontextrestored", () => this.resize());
   }
 
   /** Finds how large the people are and where they stand, in the first frame. */
   frameBodies() {
     const box = new THREE.Box3();
-    for (const person of this.trace.people) {
+    for (const person of this.trace.people.filter(({hasPoses}) => hasPoses)) {
       person.pose(this.trace.first_s);
       const step = Math.max(1, Math.floor(person.position_bind.length / 3 / 2000));
       for (let vertex = 0; vertex < person.position_bind.length / 3; vertex += step) {
@@ -188,8 +187,7 @@ class Scene {
 
   /** Turns the camera: "front", "back", "left" or "right" of the first person. */
   look(view) {
-    const facing = this.trace.people[0].info.facing;
-    const angle = (kViews[view] + kFacings[facing]) * Math.PI / 180;
+    const angle = (kViews[view] + this.trace.people[0].info.facing_deg) * Math.PI / 180;
     const narrow = Math.min(1, this.camera.aspect);
     const away_m = this.size_m * 1.7 / Math.max(0.35, narrow);
     const target = this.middle.clone().add(this.root);

@@ -46,8 +46,8 @@ class Still {
     this.canvas.width = width;
     this.canvas.height = height;
     const context = this.canvas.getContext("2d");
-    const angle = (kViews[view] + kFacings[this.trace.people[0].info.facing]) * Math.PI / 180;
-    const people = this.trace.people.map((person) => {
+    const angle = (kViews[view] + this.trace.people[0].info.facing_deg) * Math.PI / 180;
+    const people = this.trace.people.filter(({hasPoses}) => hasPoses).map((person) => {
       person.pose(time_s);
       return {person, points: this.project(person, angle)};
     });

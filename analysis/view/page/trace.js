@@ -34,12 +34,14 @@ class Person {
     return last < 0 ? 0 : changes.duty[last];
   }
 
+  get hasPoses() { return this.pose_row.length > 0; }
+
   /** Moves the palette and the root to a time, between the two poses that the page holds around it. */
   pose(time_s) {
+    if (!this.hasPoses) return;
     const rows = this.pose_row;
-    if (rows.length === 0) return;
     const before = Math.max(0, lastUpTo(rows, this.scene.rowAt(time_s)));
-    const after = Math.min(before + 1, rows.length - 1);
+    const after = before + 1 < rows.length && !this.pose_begins[before + 1] ? before + 1 : before;
     const from_s = this.scene.time_s[rows[before]];
     const span_s = this.scene.time_s[rows[after]] - from_s;
     const part = span_s > 0 ? Math.min(1, Math.max(0, (time_s - from_s) / span_s)) : 0;
@@ -47,12 +49,12 @@ class Person {
       const [a, b] = [this.pose_root[before * 3 + axis], this.pose_root[after * 3 + axis]];
       this.root[axis] = (a + (b - a) * part) * this.scene.unit_m;
     }
-    const [linear, moved] = this.info.matrix_step;
     const size = this.info.joints * 12;
     for (let i = 0; i < size; ++i) {
       const [a, b] = [this.pose_matrix[before * size + i], this.pose_matrix[after * size + i]];
       const column = Math.floor(i / 3);
-      this.palette[column * 4 + (i % 3)] = (a + (b - a) * part) * (column % 4 === 3 ? moved : linear);
+      const step = this.info.matrix_step[2 * (column >> 2) + (column % 4 === 3 ? 1 : 0)];
+      this.palette[column * 4 + (i % 3)] = (a + (b - a) * part) * step;
     }
   }
 
@@ -106,6 +108,7 @@ class Colliders {
 
   /** Returns the key before a time, or -1 where the collider is absent. */
   keyAt(collider, time_s) {
+    if (time_s < this.scene.first_s) return -1;
     const first = this.first[collider];
     const end = this.first[collider + 1];
     const row = this.scene.rowAt(time_s);

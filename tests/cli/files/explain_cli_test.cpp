@@ -79,7 +79,8 @@ TEST_F(Explain, KnowsEveryNameThatReplaysAndExportsWrite) {
   must_run("vestige import folder -o back.mcap --json import.json -q");
   must_run(
       "vestige live --from - --port osc://127.0.0.1:9 --record felt.mcap --realtime --json live.json -q <small.ndjson");
-  expect_all_explained(20);
+  must_run("vestige view small.mcap --json view.json -q");
+  expect_all_explained(21);
 }
 
 TEST_F(Explain, KnowsEveryNameThatVerbsOnTracesWrite) {

@@ -1,6 +1,7 @@
 // Pages of `vestige view`, opened in a real browser as a reader does.
 
-#include <cstdlib>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <sstream>
 
@@ -13,6 +14,7 @@ namespace {
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::Ge;
 using ::testing::Gt;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -46,6 +48,20 @@ class View : public test::CommandLineTest {
     EXPECT_THAT(result["complaints"], IsEmpty()) << result;
     EXPECT_THAT(result["requests"], IsEmpty()) << result;
     return result["seen"];
+  }
+
+  /// Records the frames of t.mcap, each changed, as again.mcap.
+  void retell(const std::function<void(json&)>& change) const {
+    ASSERT_EQ(run("vestige export -q t.mcap -o t.ndjson").exit_code, 0);
+    std::istringstream lines(read_text_file(folder_ / "t.ndjson"));
+    std::string changed;
+    for (std::string line; std::getline(lines, line);) {
+      json frame = json::parse(line);
+      change(frame);
+      changed += frame.dump() + "\n";
+    }
+    write("again.ndjson", changed);
+    ASSERT_LE(run("vestige record -q --live - -o again.mcap < again.ndjson").exit_code, 3);
   }
 
   /// The rows of contacts.csv by frame.
@@ -152,6 +168,68 @@ TEST_F(View, ScrubbingAndJumpingShowAnotherFrame) {
   EXPECT_THAT(seen[4]["motors"], Contains(json({"255", "upper torso, left"})));
 }
 
+// A trace may have frames of one time: each can be reached, and each contact.
+TEST_F(View, ShowsFramesOfOneTimeOneByOne) {
+  ASSERT_EQ(run("vestige record -q --count 40 --duration 0.2 -o t.mcap").exit_code, 0);
+  retell([](json& frame) { frame["time_s"] = frame["frame"].get<int>() / 2 * 0.002; });
+  ASSERT_EQ(run("vestige view -q again.mcap -o page.html").exit_code, 0);
+  const json seen = browse({{"steps",
+                             {press("ArrowRight"), press("ArrowRight"), press("ArrowRight"), press("ArrowLeft"),
+                              press("n"), press("n"), press("p")}}});
+  EXPECT_EQ(seen[0]["frame"], 1);
+  EXPECT_EQ(seen[1]["frame"], 2);
+  EXPECT_EQ(seen[2]["frame"], 3);
+  EXPECT_EQ(seen[3]["frame"], 2);
+  EXPECT_THAT(seen[4]["contacts"], Not(IsEmpty()));
+  EXPECT_THAT(seen[5]["contacts"], Not(IsEmpty()));
+  EXPECT_EQ(seen[6]["frame"], seen[4]["frame"]);
+}
+
+// The page says how far skin is drawn from its place, at most. So a leap is not smeared over many frames.
+TEST_F(View, ALeapIsSeenInItsFrame) {
+  ASSERT_EQ(run("vestige record -q --animation none --count 1 --duration 0.2 -o t.mcap").exit_code, 0);
+  retell([](json& frame) {
+    if (frame["frame"].get<int>() >= 109) frame["pose"]["origin"][1] = 5;
+  });
+  ASSERT_EQ(run("vestige view -q again.mcap -o page.html").exit_code, 0);
+  const json seen =
+      browse({{"steps", {{{"press", "f"}, {"scrub", 108}, {"see", true}}, {{"scrub", 109}, {"see", true}}}}});
+  EXPECT_THAT(seen[0]["middle"]["opaque"].get<double>(), Gt(0.2));
+  EXPECT_THAT(seen[1]["middle"]["opaque"].get<double>(), Lt(0.02)) << "far above the picture";
+}
+
+TEST_F(View, SaysWhatIsNotFinite) {
+  ASSERT_EQ(run("vestige record -q --count 1 --duration 0.2 -o t.mcap").exit_code, 0);
+  retell([](json& frame) {
+    if (frame["frame"].get<int>() == 100) frame["pose"]["nodes"][7][0] = 3e38;
+  });
+  EXPECT_EQ(run("vestige view -q again.mcap -o page.html").exit_code, 3);
+  const json seen = browse({{"steps", {{{"scrub", 100}, {"see", true}}}}});
+  EXPECT_THAT(seen[0]["warnings"], Contains(HasSubstr("not finite, the first in frame 100")));
+  EXPECT_THAT(seen[0]["middle"]["opaque"].get<double>(), Gt(0.2)) << "the body stays where it was";
+}
+
+TEST_F(View, LooksAtTheFaceOfWhoStandsTurned) {
+  make("", "--count 1 --duration 0.05");
+  const json ahead = browse({{"steps", {kSee, press("3")}}});
+  make("--force", "--force --at 0,0,0,180 --count 1 --duration 0.05");
+  const json turned = browse({{"steps", {kSee}}});
+  EXPECT_NEAR(turned[0]["middle"]["opaque"].get<double>(), ahead[0]["middle"]["opaque"].get<double>(), 0.005);
+  EXPECT_NEAR(turned[0]["middle"]["colourful"].get<double>(), ahead[0]["middle"]["colourful"].get<double>(), 0.002);
+  EXPECT_NE(ahead[0]["picture"]["sum"], ahead[1]["picture"]["sum"]);
+}
+
+// Playing, pausing and looking around at once neither plays faster nor loses what was asked for.
+TEST_F(View, ManyCommandsAtOnceAreAllObeyed) {
+  make("");
+  const std::string commands = "for (let i = 0; i < 9; ++i) vestige.toggle(); vestige.seekRow(200); vestige.pause()";
+  const json seen = browse(
+      {{"steps",
+        {{{"run", commands}, {"see", true}}, {{"run", "vestige.raster.zoom(0.1, 0.4)"}, {"see_timeline", true}}}}});
+  EXPECT_EQ(seen[0]["frame"], 200);
+  EXPECT_THAT(seen[1][0].get<double>(), Gt(0.3)) << "the part that was asked for, though the cursor is elsewhere";
+}
+
 TEST_F(View, ObeysTheKeyboard) {
   make("");
   json steps = json::array({kSee});
@@ -251,6 +329,7 @@ TEST_F(View, WritesBesideTheTraceOrToStandardOutput) {
   expect_failure("vestige view small.mcap", 1, {"small.html", "--force"});
   expect_failure("vestige view small.mcap --open -o -", 2, {"--open", "-o"});
   expect_failure("vestige view - < small.mcap", 2, {"-o OUT.html"});
+  ASSERT_EQ(run("vestige view -q --force --map none small.mcap").exit_code, 0) << "--map takes one value";
   expect_failure("vestige view none.mcap -o c.html", 1, {"none.mcap"}, "c.html");
   expect_failure("vestige view small.mcap -o missing/c.html", 1, {"missing"});
   expect_failure(
