@@ -171,7 +171,10 @@ TEST_F(View, ScrubbingAndJumpingShowAnotherFrame) {
 // A trace may have frames of one time: each can be reached, and each contact.
 TEST_F(View, ShowsFramesOfOneTimeOneByOne) {
   ASSERT_EQ(run("vestige record -q --count 40 --duration 0.2 -o t.mcap").exit_code, 0);
-  retell([](json& frame) { frame["time_s"] = frame["frame"].get<int>() / 2 * 0.002; });
+  retell([](json& frame) {
+    const int pair = frame["frame"].get<int>() / 2;
+    frame["time_s"] = 0.002 * pair;
+  });
   ASSERT_EQ(run("vestige view -q again.mcap -o page.html").exit_code, 0);
   const json seen = browse({{"steps",
                              {press("ArrowRight"), press("ArrowRight"), press("ArrowRight"), press("ArrowLeft"),
