@@ -32,6 +32,7 @@ namespace vestige::cli {
 
 namespace {
 
+constexpr double kVisible_m = 0.01;
 /// Larger pages open slowly.
 constexpr std::size_t kLargePage_bytes = 25'000'000;
 
@@ -175,6 +176,11 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   PagePacker packer(people, trace.reader.collider_ids());
   const std::vector<std::string> notes = pack_frames(trace, detectors, drives, packer, options);
   PageContent content = packer.finish();
+  const double skin_error_mm = content.head["error_mm"]["skin"].get<double>();
+  if (skin_error_mm > 1e3 * kVisible_m)
+    warn(fmt::format("{}: skin is drawn up to {} mm from its place: a page draws a vertex by at most four joints",
+                     output, skin_error_mm),
+         verbosity);
   content.head["about"] = about(options, detectors, drives);
   std::vector<std::string> warnings = damage_of(trace.reader, options.trace);
   warnings.insert(warnings.end(), notes.begin(), notes.end());
