@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <limits>
 #include <utility>
 
@@ -167,7 +168,7 @@ void PoseKeys::measure_cut(std::size_t vertex, const Posed& posed) {
 double PoseKeys::facing_deg() const {
   const bool stands = std::hypot(looks_.x, looks_.z) > 0;
   const glm::dvec3 looks = stands ? looks_ : glm::dvec3(forward_of(avatar_.facing.axis));
-  return std::atan2(looks.x, looks.z) * 57.29577951308232;
+  return glm::degrees(std::atan2(looks.x, looks.z));
 }
 
 std::vector<double> PoseKeys::finish(PageArrays& arrays, const std::string& prefix) {

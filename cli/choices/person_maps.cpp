@@ -32,6 +32,10 @@ std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts) {
   return maps;
 }
 
+void add_map_files(const std::vector<PersonValue>& maps, std::vector<std::string>& inputs) {
+  for (const PersonValue& map : maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
+}
+
 std::vector<std::string> map_warnings(const ActuatorMap& map, const TracedPerson& person, const SceneNames& names) {
   std::vector<std::string> warnings = map.warnings;
   std::string other = other_facing(person.avatar.facing, map.facing, names);

@@ -15,6 +15,9 @@ void add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::
 /// Reads the values of --map of a verb that replays traces. Throws `UsageError` as `parse_person_values`.
 std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts);
 
+/// Adds the files that the maps may come from to the files that a verb reads.
+void add_map_files(const std::vector<PersonValue>& maps, std::vector<std::string>& inputs);
+
 /// Reads a map for a person, and warns of what is odd about it. `trace` is the trace's name. "none" gives a map without
 /// actuators.
 ActuatorMap read_map(const std::string& map, const TracedPerson& person, const std::string& trace, Verbosity verbosity);

@@ -210,7 +210,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   options.law.check();
   std::vector<std::string> inputs = {options.trace, options.verify, options.law.actuator};
   for (const TimedMap& timed : timed_maps) inputs.insert(inputs.end(), {timed.file, sidecar_path(timed.file).string()});
-  for (const PersonValue& map : maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
+  add_map_files(maps, inputs);
   check_outputs(outputs, inputs, options.common);
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);

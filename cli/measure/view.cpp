@@ -157,7 +157,7 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
     throw UsageError("--open", "a page on standard output has no name", "name a file with -o");
   const std::vector<PersonValue> maps = parse_maps(options.maps);
   std::vector<std::string> inputs = {options.trace, options.law.actuator};
-  for (const PersonValue& map : maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
+  add_map_files(maps, inputs);
   check_outputs({output, options.common.json}, inputs, options.common);
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
   for (std::size_t i = 0; i < trace.people.size(); ++i)

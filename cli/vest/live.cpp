@@ -219,7 +219,7 @@ void run_live_verb(const CLI::App& verb, LiveVerbOptions& options, Invocation& i
   LivePlan plan = plan_of(verb, options);
   std::vector<std::string> inputs = plan.avatars;
   inputs.push_back(options.law.actuator);
-  for (const PersonValue& map : plan.maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
+  add_map_files(plan.maps, inputs);
   check_outputs(plan.outputs, inputs, options.common);
   const std::vector<WornVest> vests = vests_of(options, plan.ports, plan.maps, plan.stamps, plan.sources.size());
   for (auto vest = vests.begin() + 1; vest != vests.end(); ++vest) plan.outputs.push_back(vest->log);

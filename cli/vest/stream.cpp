@@ -72,7 +72,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   std::vector<std::string> outputs = {options.log, options.common.json};
   for (const PersonValue& port : ports) outputs.push_back(options.sink.at(port.value).output_path());
   std::vector<std::string> inputs = {options.trace, options.law.actuator};
-  for (const PersonValue& map : maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
+  add_map_files(maps, inputs);
   check_outputs(outputs, inputs, options.common);
   check_vest_flags(options, maps);
   const std::vector<std::string> stamps = stamps_of(maps);

@@ -33,7 +33,6 @@ class Player {
     this.scene = null;  // null: no WebGL
     this.raster = new Raster(byId("raster"), trace, (time_s) => this.seek(time_s));
     this.shownRow = -1;
-    this.hidden = new Set();
   }
 
   start() {
