@@ -65,6 +65,8 @@ inline std::vector<Colour> line_colours(const std::vector<std::string>& detector
 inline constexpr std::array<Colour, 7> kActuatorColours = {kBlue,    kOrange, kGreen, kVermillion,
                                                            kSkyBlue, kPurple, kBlack};
 inline constexpr Colour kUnmapped = {150, 150, 150};
+/// A motor that runs, on skin: also in `analysis/view/page`.
+inline constexpr Colour kRunning = {255, 212, 0};
 
 inline constexpr Colour kInk = {40, 40, 40};
 inline constexpr Colour kSmallPrint = {105, 105, 105};

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/plot/canvas/figure.hpp"
-#include "analysis/plot/data/scene_moments.hpp"
+#include "analysis/plot/scene/scene_moments.hpp"
 #include "cli/facing_flag.hpp"
 #include "detector/actuators/law_maker.hpp"
 #include "traces/files/output_file.hpp"

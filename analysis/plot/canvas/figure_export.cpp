@@ -20,6 +20,8 @@
 #include <vtkXMLUtilities.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <sstream>
 
@@ -39,7 +41,7 @@ int dots(double length_pt, double dots_per_inch) {
 
 void set_page(vtkRenderWindow& window, const Figure& figure, double dots_per_inch) {
   window.SetSize(dots(figure.width_pt(), dots_per_inch), dots(figure.height_pt(), dots_per_inch));
-  window.SetDPI(static_cast<int>(dots_per_inch));
+  window.SetDPI(static_cast<int>(std::lround(dots_per_inch)));
 }
 
 /// Corrects VTK's SVG text. VTK writes sizes in pt whatever the page's units are, gives the height by an attribute that
@@ -113,9 +115,10 @@ class FigureItem : public vtkContextItem {
   vtkTypeMacro(FigureItem, vtkContextItem)
 
       const Figure* figure = nullptr;
+  double dots_per_inch = kPrintDotsPerInch;
 
   bool Paint(vtkContext2D* painter) override {
-    Canvas canvas(*painter, kPrintDotsPerInch);
+    Canvas canvas(*painter, dots_per_inch);
     figure->draw(canvas);
     return true;
   }
@@ -171,30 +174,62 @@ std::string svg_of(const Figure& figure) {
   return out.str();
 }
 
-std::string png_of(const Figure& figure) {
-  const HeadlessWindow headless;
-  vtkRenderWindow& window = headless.window();
-  set_page(window, figure, kPrintDotsPerInch);
-  window.SetMultiSamples(4);  // the most that llvmpipe has
-  vtkNew<FigureItem> item;
-  item->figure = &figure;
-  vtkNew<vtkContextActor> actor;
-  actor->GetScene()->AddItem(item);
-  vtkNew<vtkRenderer> renderer;
-  renderer->SetBackground(1, 1, 1);
-  renderer->AddActor(actor);
-  window.AddRenderer(renderer);
-  window.Render();
+struct FigureScreen::Parts {
+  explicit Parts(double dots_per_inch) {
+    window().SetMultiSamples(4);  // the most that llvmpipe has
+    item->dots_per_inch = dots_per_inch;
+    actor->GetScene()->AddItem(item);
+    renderer->SetBackground(1, 1, 1);
+    renderer->AddActor(actor);
+    window().AddRenderer(renderer);
+  }
+  ~Parts() { window().RemoveRenderer(renderer); }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
 
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(&window);
-  grab->SetInputBufferTypeToRGB();
-  grab->ReadFrontBufferOff();
-  grab->ShouldRerenderOff();
-  grab->Update();  // whole: asked for a part, as a writer does, this filter writes out of bounds
-  std::string png = png_bytes(*grab->GetOutput());
-  window.RemoveRenderer(renderer);
-  return png;
+  vtkRenderWindow& window() const { return headless.window(); }
+
+  vtkNew<vtkWindowToImageFilter> grab(const Figure& figure) {
+    set_page(window(), figure, item->dots_per_inch);
+    item->figure = &figure;
+    window().Render();
+    vtkNew<vtkWindowToImageFilter> grabbed;
+    grabbed->SetInput(&window());
+    grabbed->SetInputBufferTypeToRGB();
+    grabbed->ReadFrontBufferOff();
+    grabbed->ShouldRerenderOff();
+    grabbed->Update();  // whole: asked for a part, as a writer does, this filter writes out of bounds
+    return grabbed;
+  }
+
+  HeadlessWindow headless;
+  vtkNew<FigureItem> item;
+  vtkNew<vtkContextActor> actor;
+  vtkNew<vtkRenderer> renderer;
+};
+
+FigureScreen::FigureScreen(double dots_per_inch) : parts_(std::make_unique<Parts>(dots_per_inch)) {}
+
+FigureScreen::~FigureScreen() = default;
+
+Raster FigureScreen::raster_of(const Figure& figure) {
+  const auto grabbed = parts_->grab(figure);
+  vtkImageData& image = *grabbed->GetOutput();
+  const int* size = image.GetDimensions();
+  Raster raster(static_cast<std::size_t>(size[0]), static_cast<std::size_t>(size[1]), {});
+  const auto* from = static_cast<const std::uint8_t*>(image.GetScalarPointer());
+  for (std::size_t row = raster.height(); row-- > 0;)
+    for (std::size_t column = 0; column < raster.width(); ++column, from += 3)
+      raster.at(column, row) = {from[0], from[1], from[2]};
+  return raster;
+}
+
+std::string FigureScreen::png_of(const Figure& figure) {
+  return png_bytes(*parts_->grab(figure)->GetOutput());
+}
+
+std::string png_of(const Figure& figure) {
+  return FigureScreen(kPrintDotsPerInch).png_of(figure);
 }
 
 }  // namespace vestige::plot

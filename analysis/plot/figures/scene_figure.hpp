@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/plot/canvas/figure.hpp"
-#include "analysis/plot/data/scene_moments.hpp"
+#include "analysis/plot/scene/scene_moments.hpp"
 #include "analysis/plot/studio/subject.hpp"
 
 namespace vestige::plot {

@@ -9,6 +9,7 @@
 #include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/colour_bar.hpp"
+#include "analysis/plot/canvas/duty_raster.hpp"
 #include "traces/base/csv.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
@@ -21,7 +22,6 @@ constexpr std::string_view kRemedy = "name a file that 'vestige replay --timelin
 constexpr std::size_t kMostActuators = 1024;
 /// 30 000 years.
 constexpr double kFarthestS = 1e12;
-constexpr int kFullDuty = 255;
 
 constexpr double kWidthPt = 468;
 constexpr double kLeastLeftPt = 48;
@@ -128,25 +128,8 @@ class TimelineFigure : public Figure {
 
   Raster raster(const Box& plot) const {
     const std::size_t columns = print_dots(plot.width_pt());
-    const std::size_t rows = print_dots(plot.height_pt());
-    const std::size_t actuators = timeline_.actuator_count;
-    const std::vector<std::uint8_t> highest = highest_duty(columns);
-    Raster result(columns, rows, kWhite);
-    // With more actuators than rows several share one.
-    std::vector<std::uint8_t> line(columns);
-    for (std::size_t row = 0; row < rows; ++row) {
-      const std::size_t first = row * actuators / rows;
-      const std::size_t next = (row + 1) * actuators / rows;
-      // A white line between actuators that are high enough for it.
-      if (next > first && next < actuators && rows / actuators >= 8) continue;
-      std::ranges::fill(line, std::uint8_t{0});
-      for (std::size_t actuator = first; actuator < std::max(next, first + 1); ++actuator)
-        for (std::size_t column = 0; column < columns; ++column)
-          line[column] = std::max(line[column], highest[actuator * columns + column]);
-      for (std::size_t column = 0; column < columns; ++column)
-        result.at(column, row) = amount_ramp(line[column] / static_cast<double>(kFullDuty));
-    }
-    return result;
+    return duty_raster(highest_duty(columns), columns, print_dots(plot.height_pt()),
+                       [](std::size_t, std::uint8_t duty) { return amount_ramp(duty / double{kFullDuty}); });
   }
 
   Timeline timeline_;

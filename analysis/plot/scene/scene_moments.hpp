@@ -2,12 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "analysis/plot/scene/trails.hpp"
 #include "detector/output/recorded_contacts.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
@@ -19,19 +19,6 @@ struct MomentChoice {
   double from_s = -std::numeric_limits<double>::infinity();
   double to_s = std::numeric_limits<double>::infinity();
   double trail_s = 0.1;  ///< length of the paths, back in time
-};
-
-/// The path of one collider without a gap or a jump. It has at least one stop. If the path ends at the moment, its last
-/// two stops are the segment that is tested.
-struct Path {
-  struct Stop {
-    double age_s = 0;  ///< time before the moment
-    glm::dvec3 position_m = glm::dvec3(0);
-  };
-  std::uint32_t collider = 0;  ///< its id
-  bool is_current = false;     ///< the collider exists at the moment
-  float radius_m = 0;          ///< at its last stop; 0: a point
-  std::vector<Stop> stops;     ///< oldest first; thinned out if there are many
 };
 
 /// One frame of a trace and the paths that led to it.
@@ -50,6 +37,11 @@ struct FrameTime {
 
 /// Returns the times of all frames, and rewinds the trace. Throws `Error` with `name` if the trace has no frame.
 std::vector<FrameTime> frame_times(TraceReader& trace, std::string_view name);
+
+/// Throws `UsageError` that names --from and --to if they are in the wrong order.
+void require_order(double from_s, double to_s);
+/// Throws `UsageError` that says that the trace, which lasts from `first_s` to `last_s`, has no frame in that time.
+[[noreturn]] void refuse_empty_span(std::string_view name, double first_s, double last_s);
 
 /// Reads the moments of all people. `times` are the trace's frames. Without contacts, the moments are evenly spaced
 /// over the chosen time. With contacts, they are evenly spaced among the frames that have contacts. Returns fewer
