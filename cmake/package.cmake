@@ -53,7 +53,7 @@ if(TARGET vestige-plot)
 "figures of what vestige measured
 Draws avatars, bodies with their actuator regions and contacts, scenes of
 traces, detection frequencies, collision textures and actuator timelines, as
-SVG and PNG. It is run as \"vestige plot\".")
+SVG and PNG, and films of traces. It is run as \"vestige plot\".")
   set(CPACK_DEBIAN_VESTIGE-PLOT_PACKAGE_DEPENDS "vestige (= ${PROJECT_VERSION}), fonts-liberation2")
   set(CPACK_DEBIAN_VESTIGE-PLOT_PACKAGE_RECOMMENDS "libegl1, libegl-mesa0, libgl1-mesa-dri")
   list(APPEND deb_depends vestige-plot ${share}/vestige-plot.stamp)

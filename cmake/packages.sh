@@ -2,7 +2,7 @@
 
 build_packages="build-essential cmake ninja-build pkg-config git
   libtinygltf-dev libmeshoptimizer-dev libglm-dev libeigen3-dev libopenexr-dev flatbuffers-compiler libflatbuffers-dev libzstd-dev liblz4-dev
-  libdeflate-dev libhdf5-dev libpng-dev nettle-dev libboost-dev libhwy-dev libembree-dev libcli11-dev libfmt-dev liblo-dev libwebsockets-dev nlohmann-json3-dev libjs-three
+  libdeflate-dev libhdf5-dev libpng-dev libwebp-dev nettle-dev libboost-dev libhwy-dev libembree-dev libcli11-dev libfmt-dev liblo-dev libwebsockets-dev nlohmann-json3-dev libjs-three
   libgl-dev libegl-dev libosmesa6-dev libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6
   libvtk9-dev fonts-liberation2"
 test_packages="libcgal-dev libgtest-dev libgmock-dev librapidcheck-dev libexpat1-dev zstd clang-14

@@ -17,6 +17,18 @@ void warn(const Options& options, const std::vector<std::string>& texts) {
   for (const std::string& text : texts) warn(options, text);
 }
 
+void warn_of(const Options& options, const Subject& subject) {
+  warn(options, subject.avatar.warnings);
+  warn(options, subject.map.warnings);
+  warn(options, subject.warnings);
+}
+
+int report_damage(const Options& options, const TraceReader& trace) {
+  if (trace.complete()) return cli::kDone;
+  warn(options, damage_of(trace, options.inputs.front().string()));
+  return cli::kDataLost;
+}
+
 void write_file(const Options& options, const std::filesystem::path& path, std::string_view bytes) {
   OutputFile file(path, overwrite_of(options));
   file.write(bytes);

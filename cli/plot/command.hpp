@@ -11,9 +11,11 @@
 
 #include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/scene/scene_moments.hpp"
+#include "analysis/plot/studio/subject.hpp"
 #include "cli/facing_flag.hpp"
 #include "detector/actuators/law_maker.hpp"
 #include "traces/files/output_file.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::plot {
 
@@ -38,6 +40,12 @@ struct Options {
   std::uint64_t every = 0;  ///< 0: by `rate_hz`
   std::size_t top = 12;
   std::string counts;
+  std::string speed = "1";
+  double film_rate_hz = 25;
+  double film_trail_ms = 150;
+  std::size_t film_width = 640;
+  std::string view = "auto";
+  std::string method = "static";
   bool force = false;
   bool quiet = false;
 };
@@ -49,6 +57,12 @@ inline Overwrite overwrite_of(const Options& options) {
 /// Prints "vestige: warning: …" to standard error; with -q, prints nothing.
 void warn(const Options& options, std::string_view text);
 void warn(const Options& options, const std::vector<std::string>& texts);
+
+/// Warns of all that is doubtful about a subject.
+void warn_of(const Options& options, const Subject& subject);
+
+/// Warns of what is wrong with the input, a trace that was read to its end. Returns its part of the exit code.
+int report_damage(const Options& options, const TraceReader& trace);
 
 /// Writes a file and prints its path, unless -q is given.
 void write_file(const Options& options, const std::filesystem::path& path, std::string_view bytes);

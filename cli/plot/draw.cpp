@@ -50,19 +50,6 @@ std::filesystem::path sweep_folder(const Options& options) {
   return std::filesystem::is_directory(first) ? first : first.parent_path();
 }
 
-void warn_of(const Options& options, const Subject& subject) {
-  warn(options, subject.avatar.warnings);
-  warn(options, subject.map.warnings);
-  warn(options, subject.warnings);
-}
-
-/// What is wrong with a trace that was read to its end; its part of the exit code.
-int report_damage(const Options& options, const TraceReader& trace) {
-  if (trace.complete()) return cli::kDone;
-  warn(options, damage_of(trace, options.inputs.front().string()));
-  return cli::kDataLost;
-}
-
 /// Contacts of another avatar or map are not drawn. With --map, contacts name actuators of a map that is not there.
 PersonLimits limits_of(const Options& options, const Subject& subject) {
   PersonLimits limits;

@@ -22,6 +22,9 @@ int draw_scene(Options options);
 /// Draws the page and the figures of the results of 'vestige batch'.
 int draw_report(const Options& options);
 
+/// Draws a trace as an animated picture. Writes one WebP file.
+int draw_film(const Options& options);
+
 /// Writes a trace as a time series for ParaView: a list and a folder of files instead of a figure.
 int draw_paraview(const Options& options);
 

@@ -40,7 +40,8 @@ void answer(const std::string& word, const CLI::App& app, const std::vector<std:
 
 int run(int argc, char** argv) {
   Options options;
-  CLI::App app("Draw results, traces and avatars as figures, SVG and PNG (300 dots per inch)", "vestige plot");
+  CLI::App app("Draw results, traces and avatars as figures, SVG and PNG (300 dots per inch), and traces as films",
+               "vestige plot");
   app.option_defaults()->disable_flag_override();
   app.formatter(
       std::make_shared<help::HelpFormatter>("  vestige plot sweep results/sweep\n"
@@ -58,7 +59,7 @@ int run(int argc, char** argv) {
   }
   if (const auto exit_code = vestige::cli::parse_command_line(app, "figure", argc, argv)) return *exit_code;
   if (options.output == "-")
-    throw vestige::UsageError("-o -", "a plot is two files, and standard output is one", "name OUT");
+    throw vestige::UsageError("-o -", "figures are not written to standard output", "name OUT");
   return std::ranges::find_if(verbs, [](const auto& verb) { return verb.command->parsed(); })->draw(options);
 }
 

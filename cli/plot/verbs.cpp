@@ -48,6 +48,41 @@ void add_person(CLI::App& command, Options& options) {
       ->check(help::whole_number(1, 100));
 }
 
+/// Adds --from and --to.
+void add_span(CLI::App& command, Options& options) {
+  command
+      .add_option("--from", options.moments.from_s,
+                  "Draw frames at this time and later, in seconds of the trace [default: its start]")
+      ->type_name("SECONDS")
+      ->check(help::kFinite);
+  command
+      .add_option("--to", options.moments.to_s,
+                  "Draw frames before this time and at it, in seconds of the trace [default: its end]")
+      ->type_name("SECONDS")
+      ->check(help::kFinite);
+}
+
+/// Adds --law, its parameters and --hold.
+void add_law(CLI::App& command, Options& options) {
+  command
+      .add_option("--law", options.law.law, "The intensity law, which says how strongly a contact drives the actuators")
+      ->capture_default_str()
+      ->type_name(fmt::format("{}", fmt::join(law_names(), "|")));
+  for (std::size_t i = 0; i < law_parameters().size(); ++i) {
+    const LawParameter& known = law_parameters()[i];
+    command.add_option(known.flag, options.law.parameters[i], known.help)
+        ->check(help::kPositive)
+        ->type_name(known.type_name);
+  }
+  command
+      .add_option(
+          "--hold", options.law.hold_ms,
+          "How long a contact is felt, in ms: a coin motor cannot answer a single frame; 0 gives the raw frames")
+      ->capture_default_str()
+      ->type_name("MS")
+      ->check(help::between(0, 10000));
+}
+
 /// Draws the folder that the verb of the same name wrote.
 CLI::App& add_results(CLI::App& app, Options& options, const char* name, const char* what, const char* output_help) {
   CLI::App& command = add_command(app, name, what,
@@ -174,16 +209,7 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
   scene.add_option("--frames", options.moments.count, "How many frames are drawn")
       ->capture_default_str()
       ->check(CLI::Range(1, 24));
-  scene
-      .add_option("--from", options.moments.from_s,
-                  "Draw frames at this time and later, in seconds of the trace [default: its start]")
-      ->type_name("SECONDS")
-      ->check(help::kFinite);
-  scene
-      .add_option("--to", options.moments.to_s,
-                  "Draw frames before this time and at it, in seconds of the trace [default: its end]")
-      ->type_name("SECONDS")
-      ->check(help::kFinite);
+  add_span(scene, options);
   scene.add_option("--trail", options.trail_ms, "How far back paths and contacts are shown")
       ->capture_default_str()
       ->type_name("MS")
@@ -201,6 +227,48 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
   add_other_map(scene, options);
   add_common_options(scene, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -scene]");
   return scene;
+}
+
+CLI::App& add_film(CLI::App& app, Options& options) {
+  CLI::App& film = add_command(app, "film", "A trace as an animated picture (WebP) for pages and slides",
+                               "  vestige plot film man.mcap --to 0.5\n"
+                               "  vestige plot film man.mcap --from 0.1 --to 0.2 --speed 1/10 -o slow.webp\n");
+  add_input(film, options, "MCAP", "The trace");
+  add_span(film, options);
+  film.add_option("--speed", options.speed,
+                  "Seconds of the trace in a second of the film, a number or a fraction: 1/10 is ten times slower than "
+                  "life")
+      ->capture_default_str()
+      ->type_name("X");
+  film.add_option("--fps", options.film_rate_hz,
+                  "Show at most this many pictures in a second; each is a frame of the trace")
+      ->capture_default_str()
+      ->type_name("HZ")
+      ->check(help::between(1, 60));
+  film.add_option("--width", options.film_width, "Width in pixels; the height follows from what there is to see")
+      ->capture_default_str()
+      ->type_name("PIXELS")
+      ->check(help::whole_number(320, 1920));
+  film.add_option("--view", options.view,
+                  "The side of the first person's rest pose that is seen; auto: half-left, or of several people the "
+                  "right")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "front", "back", "left", "right"}));
+  film.add_option("--trail", options.film_trail_ms, "How far back paths and contacts are shown")
+      ->capture_default_str()
+      ->type_name("MS")
+      ->check(help::between(0.001, 10000));
+  add_other_map(film, options);
+  film.add_option("--method", options.method,
+                  "How contacts are found: static, carried or ccd, as in 'vestige replay --help'")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"static", "carried", "ccd"}));
+  add_law(film, options);
+  film.add_option("--actuator", options.law.actuator,
+                  "A description of the motors in JSON: the duty for each amplitude, and a kick that starts them")
+      ->type_name("FILE.json");
+  add_common_options(film, options, "FILE.webp", "The film [default: the input's name and -film.webp]");
+  return film;
 }
 
 CLI::App& add_avatar(CLI::App& app, Options& options) {
@@ -240,23 +308,7 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
   add_input(paraview, options, "MCAP", "The trace");
   add_other_map(paraview, options);
   add_person(paraview, options);
-  paraview
-      .add_option("--law", options.law.law, "The intensity law, which says how strongly a contact drives the actuators")
-      ->capture_default_str()
-      ->type_name(fmt::format("{}", fmt::join(law_names(), "|")));
-  for (std::size_t i = 0; i < law_parameters().size(); ++i) {
-    const LawParameter& known = law_parameters()[i];
-    paraview.add_option(known.flag, options.law.parameters[i], known.help)
-        ->check(help::kPositive)
-        ->type_name(known.type_name);
-  }
-  paraview
-      .add_option(
-          "--hold", options.law.hold_ms,
-          "How long a contact is felt, in ms: a coin motor cannot answer a single frame; 0 gives the raw frames")
-      ->capture_default_str()
-      ->type_name("MS")
-      ->check(help::between(0, 10000));
+  add_law(paraview, options);
   CLI::Option* every =
       paraview.add_option("--every", options.every, "Write one time step for every N frames, instead of --rate")
           ->type_name("N")
@@ -295,6 +347,7 @@ std::vector<Verb> add_verbs(CLI::App& app, Options& options) {
           {&add_textures(app, options), draw_textures},
           {&add_body(app, options), draw_body},
           {&add_scene(app, options), draw_scene},
+          {&add_film(app, options), draw_film},
           {&add_avatar(app, options), draw_avatar},
           {&add_report(app, options), draw_report},
           {&add_paraview(app, options), draw_paraview}};
