@@ -27,7 +27,7 @@ constexpr double kKeyRoomPt = 14;
 constexpr double kLinePt = 9;
 constexpr double kLeastLabelledPt = 8;
 constexpr double kLeastTimelinePt = 6;
-constexpr double kMostTimelinePt = 126;
+constexpr double kMostTimelinePt = 192;
 constexpr double kMostLabelPt = 110;
 constexpr double kSwatchPt = 6;
 
