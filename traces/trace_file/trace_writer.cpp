@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <version.hpp>
 
 #include "traces/base/error.hpp"
-#include "traces/base/nanoseconds.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/files/append_file.hpp"
 #include "traces/mcap/writer.hpp"
@@ -18,7 +16,9 @@
 #include "traces/scene/radius.hpp"
 #include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_messages.hpp"
-#include "traces/trace_file/viz_messages.hpp"
+#include "traces/viz/viz_format.hpp"
+#include "traces/viz/viz_messages.hpp"
+#include "traces/viz/viz_pace.hpp"
 
 namespace vestige {
 
@@ -99,7 +99,7 @@ class TraceWriter::Implementation {
   mcap::Writer writer_;
   MessageEncoder encoder_;
   std::optional<VizEncoder> viz_;
-  std::int64_t next_viz_ns_ = 0;
+  VizPace viz_pace_ = VizPace(viz_format::kRate_hz);
   int version_;
   std::vector<std::size_t> node_counts_;  ///< by person
   std::vector<std::uint32_t> ids_;        ///< collider ids of one frame, sorted
@@ -154,7 +154,8 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
     avatars.reserve(people.size());
     for (const TracePerson& person : people) avatars.push_back(&person.avatar);
     viz_.emplace(avatars);
-    for (const mcap::Schema& schema : viz_format::schemas()) writer_.write(schema);
+    writer_.write(viz_format::transforms_schema());
+    writer_.write(viz_format::scene_schema());
     for (const mcap::Channel& channel : viz_format::channels()) writer_.write(channel);
   }
   file_.sync();
@@ -227,9 +228,8 @@ void TraceWriter::Implementation::write_message(Stream stream, mcap::Bytes data)
 
 /// Writes viewer messages at the first frame of each sixtieth of a second.
 void TraceWriter::Implementation::write_viz(const TraceFrame& frame) {
-  if (!viz_ || frame.time_ns < next_viz_ns_) return;
-  const double slots = std::floor(static_cast<double>(frame.time_ns) / kNanosecondsPerSecond * viz_format::kRate_hz);
-  next_viz_ns_ = static_cast<std::int64_t>(std::ceil((slots + 1) / viz_format::kRate_hz * kNanosecondsPerSecond));
+  if (!viz_ || !viz_pace_.is_due(frame.time_ns)) return;
+  viz_pace_.end_slot(frame.time_ns);
   write_message(viz_format::kTransformsId, viz_->transforms(frame));
   write_message(viz_format::kSceneId, viz_->scene(frame));
 }
@@ -304,7 +304,7 @@ std::uint64_t TraceWriter::Implementation::bytes_if_finished_with(const TraceFra
   for (const Pose& pose : frame.poses) bytes += kMessageBytes + kNodeBytes * pose.nodes.size();
   bytes += kMessageBytes * frame.teleported.size();
   for (const Note& note : notes_) bytes += kMessageBytes + note.text.size();
-  if (viz_ && frame.time_ns >= next_viz_ns_) bytes += viz_->most_bytes(frame);
+  if (viz_ && viz_pace_.is_due(frame.time_ns)) bytes += viz_->most_bytes(frame);
   if (!events_defined_ && !(frame.teleported.empty() && notes_.empty())) bytes += kEventsChannelBytes;
   return bytes;
 }

@@ -24,7 +24,7 @@ using Compression = mcap::Compression;
 /// the system, which survives the death of the program.
 enum class ChunkSync : std::uint8_t { kNone, kEach };
 
-/// Whether the trace also holds what a viewer needs to draw it, 60 times a second: see viz_messages.hpp.
+/// Whether the trace also holds what a viewer needs to draw it, 60 times a second: see `VizEncoder`.
 enum class Viz : std::uint8_t { kNone, kScene };
 
 struct TraceWriterOptions {

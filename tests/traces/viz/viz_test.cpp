@@ -76,11 +76,15 @@ TEST_F(VizTest, TransformsPutEveryNodeWhereTheReferenceSkinningDoes) {
       EXPECT_TRUE(
           world.emplace(transform["child_frame_id"].get<std::string>(), parent->second * matrix_of(transform)).second);
     }
-    EXPECT_EQ(world.size(), avatar_.nodes.size() + 2);
+    EXPECT_EQ(world.size(), avatar_.nodes.size() + 3);
     for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
       const glm::dvec3 place = as_recorded.poses.front().origin_m + glm::dvec3(expected[i][3]);
       EXPECT_LT(glm::length(glm::dvec3(world.at(avatar_.nodes[i].name)[3]) - place), 1e-6) << avatar_.nodes[i].name;
     }
+    const glm::dmat4& upright = world.at("upright");
+    const std::string& root = avatar_.nodes[static_cast<std::size_t>(avatar_.root_node)].name;
+    EXPECT_LT(glm::length(glm::dvec3(upright[3] - world.at(root)[3])), 1e-6);
+    EXPECT_LT(glm::length(glm::dvec3(upright[2]) - glm::dvec3(0, 1, 0)), 1e-6) << "viewers have z up";
   }
 }
 
@@ -98,7 +102,7 @@ TEST_F(VizTest, FramesAndSkeletonOfASecondPersonHaveTheirNumber) {
   std::map<std::string, json> frames;
   for (const json& transform : seen["/viz/tf"]["messages"][0]["transforms"])
     EXPECT_TRUE(frames.emplace(transform["child_frame_id"].get<std::string>(), transform).second) << transform;
-  EXPECT_EQ(frames.size(), 2 * (avatar_.nodes.size() + 1));
+  EXPECT_EQ(frames.size(), 2 * (avatar_.nodes.size() + 1) + 1);
   EXPECT_EQ(frames.at("avatar 2")["translation"]["z"], 7);
   const std::string root = avatar_.nodes[static_cast<std::size_t>(avatar_.node_order.front())].name;
   EXPECT_EQ(frames.at(root)["parent_frame_id"], "avatar");
