@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   add_record(program, invocation);
   add_replay(program, invocation);
   add_view(program, invocation);
+  add_viz(program, invocation);
   add_stream(program, invocation);
   add_live(program, invocation);
   add_vest(program, invocation);

@@ -11,6 +11,7 @@ namespace vestige::cli {
 void add_record(CLI::App& program, Invocation& invocation);
 void add_replay(CLI::App& program, Invocation& invocation);
 void add_view(CLI::App& program, Invocation& invocation);
+void add_viz(CLI::App& program, Invocation& invocation);
 void add_sweep(CLI::App& program, Invocation& invocation);
 void add_growth(CLI::App& program, Invocation& invocation);
 void add_compare(CLI::App& program, Invocation& invocation);

@@ -68,6 +68,8 @@ FieldGroups doctor_fields();
 FieldGroups recover_fields();
 FieldGroups rewriting_fields();
 FieldGroups merge_fields();
+FieldGroups viz_fields();
+FieldGroups viewer_layout_fields();
 FieldGroups cat_fields();
 FieldGroups export_fields();
 

@@ -93,6 +93,9 @@ std::vector<FileKind> trace_kinds() {
       {"recompress.json", kJson, "A file that was compressed anew", "vestige recompress --json OUT.json",
        rewriting_fields()},
       {"merge.json", kJson, "Parts that were joined", "vestige merge --json OUT.json", merge_fields()},
+      {"viz.json", kJson, "A trace that gained what viewers draw", "vestige viz --json OUT.json", viz_fields()},
+      {"layout.json", kJson, "A layout for Foxglove and Lichtblick", "vestige viz --layout OUT.json",
+       viewer_layout_fields()},
       {"cat.json", kJson, "What was printed", "vestige cat --json OUT.json", cat_fields()}};
 }
 

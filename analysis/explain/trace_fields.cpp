@@ -219,6 +219,28 @@ constexpr Field kMerge[] = {
     {"complete", "", "false: a part is damaged"},
 };
 
+constexpr Field kViz[] = {
+    {"trace", "", "the trace that was read"},
+    {"output", "", "the trace that was written"},
+    {"detector", "", "what found the contacts"},
+    {"law", "", "what made duties of them"},
+    {"hold_ms", "ms", "how long a contact is felt"},
+    {"frames", "", "frames of the trace"},
+    {"contacts", "", "contacts that were found"},
+    {"bytes_before", "bytes", "size of the trace that was read"},
+    {"bytes", "bytes", "size of the trace that was written"},
+    {"complete", "", "false: the trace is damaged"},
+};
+
+constexpr Field kViewerLayout[] = {
+    {"layout/direction", "", "row: the body stands left of the other panels"},
+    {"layout/*", "", "where the panels stand"},
+    {"configById/*", "", "settings of a panel, as Foxglove and Lichtblick name them"},
+    {"playbackConfig/*", "", "how it is played"},
+    {"globalVariables", "", "none"},
+    {"userNodes", "", "none"},
+};
+
 constexpr Field kCat[] = {
     {"file", "", "the file that was read"},
     {"messages", "", "messages that were printed"},
@@ -287,6 +309,14 @@ FieldGroups rewriting_fields() {
 
 FieldGroups merge_fields() {
   return {{"", kMerge}, {"", origin_fields()}};
+}
+
+FieldGroups viz_fields() {
+  return {{"", kViz}, {"", origin_fields()}};
+}
+
+FieldGroups viewer_layout_fields() {
+  return {{"", kViewerLayout}};
 }
 
 FieldGroups cat_fields() {

@@ -330,7 +330,7 @@ void add_record(CLI::App& program, Invocation& invocation) {
       ->check(CLI::IsMember({"zstd", "lz4", "none"}));
   verb->add_flag("--viz", options->viz,
                  "Add /viz/tf and /viz/scene, 60 times a second, so that Foxglove and Lichtblick draw skeleton and "
-                 "colliders");
+                 "colliders; 'vestige viz' adds contacts, duties and skin afterwards");
   verb->add_option("-o,--output", options->output, "The trace to write, or '-' for standard output")
       ->required()
       ->type_name("OUT.mcap|-");

@@ -1,5 +1,5 @@
 // Decodes what a trace shows viewers as Foxglove and Lichtblick do, by the schemas in the file, after comparing those
-// with Foxglove's own; prints the messages as JSON:
+// of FlatBuffers with Foxglove's own; prints the messages as JSON:
 //   node read_viz.mjs FILE.mcap
 import { readFileSync } from "node:fs";
 import { McapIndexedReader } from "@mcap/core";
@@ -71,10 +71,17 @@ const reader = await McapIndexedReader.Initialize({
   decompressHandlers: { zstd: (bytes) => decompress(bytes) },
 });
 
-const parsers = new Map();
+const decoders = new Map();
 for (const channel of reader.channelsById.values()) {
   if (!channel.topic.startsWith("/viz/")) continue;
   const record = reader.schemasById.get(channel.schemaId);
+  if (channel.messageEncoding === "json") {
+    check(record.encoding === "jsonschema", `${channel.topic} has no JSON schema`);
+    const text = new TextDecoder("utf-8", { fatal: true });
+    check(JSON.parse(text.decode(record.data)).type === "object", `${channel.topic} holds no objects`);
+    decoders.set(channel.id, { topic: channel.topic, schema: record.name, decode: (data) => JSON.parse(text.decode(data)) });
+    continue;
+  }
   check(channel.messageEncoding === "flatbuffer" && record.encoding === "flatbuffer", "it is no flatbuffer");
   const schema = Schema.getRootAsSchema(new ByteBuffer(record.data));
   check(schema.rootTable().name() === record.name, `the schema's root is not ${record.name}`);
@@ -85,18 +92,19 @@ for (const channel of reader.channelsById.values()) {
     check(own.valuesLength() === expected.values.length, `${own.name()} has other values`);
     expected.values.forEach((value, k) => check(own.values(k).name() === value.name, `${own.name()}.${value.name}`));
   }
-  parsers.set(channel.id, { topic: channel.topic, parser: new Parser(schema), schema: record.name });
+  const parser = new Parser(schema);
+  decoders.set(channel.id, {
+    topic: channel.topic,
+    schema: record.name,
+    decode: (data) => parser.toObject(Table.getRootTable(new ByteBuffer(data)), true),
+  });
 }
 
 const seen = {};
 for await (const message of reader.readMessages()) {
-  const known = parsers.get(message.channelId);
+  const known = decoders.get(message.channelId);
   if (known === undefined) continue;
   seen[known.topic] ??= { schema: known.schema, messages: [] };
-  const table = Table.getRootTable(new ByteBuffer(message.data));
-  seen[known.topic].messages.push({
-    log_time: Number(message.logTime),
-    ...known.parser.toObject(table, true),
-  });
+  seen[known.topic].messages.push({ log_time: Number(message.logTime), ...known.decode(message.data) });
 }
 console.log(JSON.stringify(seen));

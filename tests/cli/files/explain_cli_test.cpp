@@ -90,6 +90,7 @@ TEST_F(Explain, KnowsEveryNameThatVerbsOnTracesWrite) {
   must_run("vestige trim small.mcap --from 0 --to 0.5 -o first.mcap --json trim.json -q");
   must_run("vestige trim small.mcap --from 0.5 --to 2 -o rest.mcap -q");
   must_run("vestige merge first.mcap rest.mcap -o whole.mcap --json merge.json -q");
+  must_run("vestige viz small.mcap -o seen.mcap --layout layout.json --json viz.json -q");
   must_run("vestige recompress small.mcap --compression lz4 -o other.mcap --json recompress.json -q");
   must_run("head -c -200 small.mcap > cut.mcap");
   EXPECT_NE(run("vestige doctor small.mcap cut.mcap --json doctor.json -q").exit_code, 0);

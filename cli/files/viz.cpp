@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/base/provenance.hpp"
+#include "analysis/run/detection_run.hpp"
+#include "analysis/viz/viewer_layout.hpp"
+#include "analysis/viz/viz_trace.hpp"
+#include "cli/choices/detectors.hpp"
+#include "cli/choices/law_choice.hpp"
+#include "cli/choices/scene.hpp"
+#include "cli/files/export_formats.hpp"
+#include "cli/files/rewriting.hpp"
+#include "cli/help/validators.hpp"
+#include "cli/verbs.hpp"
+#include "detector/actuators/law_maker.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
+#include "traces/files/output_file.hpp"
+#include "traces/trace_file/trace_format.hpp"
+#include "traces/viz/viz_format.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct VizOptions {
+  CommonOptions common;
+  DetectorChoice choice;
+  LawFlags law;
+  std::string trace;
+  std::string output;
+  std::string layout;
+  double mesh_rate_hz = 15;
+};
+
+/// The people of a trace with what looks for contacts on them and lets them feel.
+class Watchers {
+ public:
+  Watchers(const VizOptions& options, OpenTrace& trace);
+
+  DetectionRun run(OpenTrace& trace) const { return {people_, trace.reader.collider_ids()}; }
+  /// Returns what was found on everybody in the frame that `run` stepped to.
+  std::vector<SeenPerson> look(const TraceFrame& frame, const DetectionRun& run);
+  std::string detector() const { return detectors_.front()->name(); }
+
+ private:
+  std::vector<std::unique_ptr<Detector>> detectors_;
+  std::vector<std::unique_ptr<ActuatorDrive>> drives_;  ///< null for a person without an actuator
+  std::vector<DetectedPerson> people_;
+};
+
+Watchers::Watchers(const VizOptions& options, OpenTrace& trace) {
+  PlaneSet planes = kHashedPlanes | Plane::kPosition;
+  for (const TracedPerson& person : trace.people) {
+    drives_.emplace_back();
+    if (person.map.actuator_count == 0) continue;
+    require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
+    const DriveMaker maker(options.law, person.avatar, person.map);
+    planes = planes | maker.planes();
+    drives_.back() = maker.make();
+  }
+  SharedContext context(options.choice.context, options.choice.device);
+  for (std::size_t i = 0; i < trace.people.size(); ++i) {
+    const TracedPerson& person = trace.people[i];
+    detectors_.push_back(
+        make_detector(options.choice.detector, context, options.choice, person.avatar, person.map, planes));
+    people_.push_back({i, person.avatar, *detectors_.back()});
+  }
+}
+
+std::vector<SeenPerson> Watchers::look(const TraceFrame& frame, const DetectionRun& run) {
+  std::vector<SeenPerson> seen;
+  for (std::size_t i = 0; i < people_.size(); ++i) {
+    const ActuatorFrame* felt =
+        drives_[i] == nullptr ? nullptr : &drives_[i]->next(frame.time_s(), run.row(i), &run.frame(i));
+    seen.push_back({run.frame(i), run.row(i), felt});
+  }
+  return seen;
+}
+
+void require_surfaces(const OpenTrace& trace, const std::string& name) {
+  for (std::size_t i = 0; i < trace.people.size(); ++i)
+    require_surface(
+        trace.people[i].avatar,
+        fmt::format("{}, {}", name, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
+}
+
+/// Reads the whole trace into `copy`.
+void add_all(OpenTrace& trace, Watchers& watchers, VizTrace& copy, const VizOptions& options) {
+  DetectionRun run = watchers.run(trace);
+  const auto total = static_cast<double>(trace.reader.frame_count());
+  double done = 0;
+  Progress progress("Looking for contacts", options.common.verbosity());
+  TraceFrame frame;
+  while (trace.reader.next(frame)) {
+    run.step(frame);
+    copy.write(frame, watchers.look(frame, run));
+    if (!progress.update(++done / total)) throw Error(options.trace, "the work was stopped; nothing was written", "");
+  }
+  copy.finish();
+}
+
+void run_viz(const VizOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  const std::vector<std::string> outputs = {options.output, options.layout, options.common.json};
+  if (options.trace == "-")
+    throw UsageError("TRACE", "it is read twice, but standard input can be read once", "name a file");
+  options.law.check();
+  check_outputs(outputs, {options.trace, options.law.actuator}, options.common);
+  check_trace_name(options.output);
+  if (options.output == "-") refuse_terminal("-o -");
+  OpenTrace trace(options.trace, verbosity, People::kSeveral);
+  require_surfaces(trace, options.trace);
+  require_frames(trace.reader, options.trace);
+  Watchers watchers(options, trace);
+  warn_of_radii({watchers.detector()}, trace.reader, options.trace, verbosity);
+  const mcap::FileSource source(options.trace);
+
+  catch_interrupts();
+  std::optional<OutputFile> layout;
+  if (!options.layout.empty()) layout.emplace(options.layout, options.common.overwrite());
+  OutputFile written(options.output, options.common.overwrite());
+  std::vector<VizPerson> people;
+  for (const TracedPerson& person : trace.people) people.push_back({person.avatar, person.map});
+  VizTrace copy({source, people, trace.reader.collider_ids(), options.mesh_rate_hz},
+                [&](mcap::Bytes bytes) { written.write(bytes); });
+  add_all(trace, watchers, copy, options);
+  if (layout) layout->write(viewer_layout(people));
+  written.commit();
+  if (layout) layout->commit();
+
+  const mcap::DamageList damages = copy.damages();
+  if (trace.reader.complete()) warn_of_damage(options.trace, damages, verbosity);
+  print_summary(
+      fmt::format("{}: {} and {}, {} bytes ({} before)\n", options.output, counted(trace.reader.frame_count(), "frame"),
+                  counted(copy.contacts(), "contact"), copy.bytes_written(), source.size()),
+      outputs, options.common);
+  write_json(options.common.json,
+             with_provenance(invocation.argv, {{"trace", options.trace},
+                                               {"output", options.output},
+                                               {"detector", watchers.detector()},
+                                               {"law", options.law.law},
+                                               {"hold_ms", options.law.hold_ms},
+                                               {"frames", trace.reader.frame_count()},
+                                               {"contacts", copy.contacts()},
+                                               {"bytes_before", source.size()},
+                                               {"bytes", copy.bytes_written()},
+                                               {"complete", trace.reader.complete() && damages.empty()}}),
+             options.common);
+  invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
+  if (!damages.empty()) invocation.exit_code = kDataLost;
+}
+
+}  // namespace
+
+void add_viz(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<VizOptions>();
+  CLI::App* verb = add_verb(program, "viz", "Add to a trace what Foxglove and Lichtblick draw",
+                            "  vestige viz man.mcap -o seen.mcap --layout layout.json\n"
+                            "  vestige viz man.mcap --law speed --mesh-rate 0 -o seen.mcap\n");
+  verb->add_option("TRACE", options->trace, "The trace")->required();
+  verb->add_option("-o,--output", options->output,
+                   "The trace to write, which has all of TRACE, and contacts, duties and skin on topics /viz")
+      ->required()
+      ->type_name("OUT.mcap|-");
+  verb->add_option("--layout", options->layout,
+                   "Write the layout that Foxglove and Lichtblick import for OUT.mcap: body, duties and contacts")
+      ->type_name("LAYOUT.json|-");
+  verb->add_option("--mesh-rate", options->mesh_rate_hz,
+                   "How often a second the posed skin is added, which takes most of the space; 0: never")
+      ->check(help::between(0, viz_format::kRate_hz))
+      ->capture_default_str()
+      ->type_name("HZ");
+  add_detector_and_context(*verb, options->choice);
+  add_detector_options(*verb, options->choice);
+  add_law_options(*verb, options->law, "Intensity");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_viz(*options, invocation); });
+}
+
+}  // namespace vestige::cli
