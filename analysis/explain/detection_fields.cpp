@@ -94,9 +94,10 @@ constexpr Field kRun[] = {
 constexpr Field kView[] = {
     {"trace", "", "the trace that was read"},
     {"output", "", "the page"},
-    {"detector", "", "the detector that ran"},
     {"frames", "", "frames of the page"},
-    {"contacts", "", "contacts in all frames, on skin with and without an actuator"},
+    {"sides/title", "", "the map or the detector of a side; empty if there is one side"},
+    {"sides/detector", "", "the detector that ran"},
+    {"sides/contacts", "", "contacts in all frames, on skin with and without an actuator"},
     {"bytes", "bytes", "size of the page"},
     {"error_mm/skin", "mm", "how far skin is drawn from its place, at most"},
     {"error_mm/colliders", "mm", "how far a collider is drawn from its place, at most"},

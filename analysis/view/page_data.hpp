@@ -38,18 +38,19 @@ struct PageRow {
 ///   key_position        i32  x, y, z in `unit_m` of the head, from `origin_m`
 ///   key_radius          i32  in `unit_m`; 0 is a point
 ///   key_begins          u8   1: the collider appears or jumps here, and did not move here from the key before
-/// Arrays of person i, counted from 1, after "person_i/".
+/// Arrays of body i, counted from 1, after "body_i/".
 ///   position_bind       f32  x, y, z of each vertex
 ///   texture_coordinate  f32  u, v of each vertex
 ///   joint, weight       u16  four of each vertex: places in the palette, and shares of 65535
 ///   triangle            u32  three vertices
-///   map_actuator        u16  the map's texels, row 0 at the top; 0: no actuator
 ///   pose_row            u32  the rows of the poses kept
 ///   pose_begins         u8   1: there was no motion here from the pose kept before
 ///   pose_root           i32  x, y, z as key_position
 ///   pose_matrix         i16  for each entry of the palette four columns of three numbers, relative to the root.
 ///                            Of entry j, the first three columns are in steps of the head's matrix_step[2 j], the
 ///                            fourth in steps of matrix_step[2 j + 1]
+/// Arrays of person i, counted from 1, after "person_i/". The person's `body` of the head counts from 0.
+///   map_actuator        u16  the map's texels, row 0 at the top; 0: no actuator
 ///   contact_row, contact_collider, contact_triangle u32, contact_t f32, contact_barycentric f64 (u, v),
 ///   contact_position_m f64 (x, y, z in the world), contact_actuator u16, contact_side i8: every contact, exactly
 ///   duty_row u32, duty_actuator u16 (from 0), duty u8: every change of a duty, from 0 at the start

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <utility>
 
 #include "analysis/colours/region_colours.hpp"
 
@@ -53,11 +54,13 @@ nlohmann::ordered_json actuators_of(const ActuatorMap& map) {
 
 }  // namespace
 
-PagePacker::PagePacker(std::span<const PagePerson> people, std::span<const std::uint32_t> collider_ids)
-    : colliders_(collider_ids) {
+PagePacker::PagePacker(std::span<const PagePerson> people, std::vector<std::string> sides,
+                       std::span<const std::uint32_t> collider_ids)
+    : sides_(std::move(sides)), colliders_(collider_ids) {
   people_.reserve(people.size());
   for (const PagePerson& person : people) {
-    people_.push_back({person, PoseKeys(person.avatar)});
+    if (person.side == 0) poses_.emplace_back(person.avatar);
+    people_.push_back({person});
     people_.back().duties.last.resize(person.map.actuator_count);
   }
 }
@@ -81,12 +84,13 @@ void PagePacker::add(const TraceFrame& frame) {
   const PageRow at = {static_cast<std::uint32_t>(frame_index_.size()), frame.index, frame.time_s()};
   frame_index_.push_back(static_cast<std::uint32_t>(frame.index));
   time_ns_.push_back(static_cast<double>(frame.time_ns));
-  for (std::size_t i = 0; i < people_.size(); ++i) people_[i].poses.add(at, frame.poses[i], origin_m_);
+  for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i].add(at, frame.poses[i], origin_m_);
   colliders_.add(at, frame, origin_m_);
 }
 
-void PagePacker::add_contacts(std::size_t person, const DetectorFrame& frame, const ContactRow& row) {
+std::size_t PagePacker::add_contacts(std::size_t person, const DetectorFrame& frame, const ContactRow& row) {
   Contacts& all = people_[person].contacts;
+  const std::size_t before = all.row.size();
   for (std::size_t column = 0; column < row.size(); ++column) {
     const Contact& contact = row[column];
     if (!contact.hit()) continue;
@@ -100,6 +104,7 @@ void PagePacker::add_contacts(std::size_t person, const DetectorFrame& frame, co
     all.actuator.push_back(contact.actuator);
     all.side.push_back(contact.side);
   }
+  return all.row.size() - before;
 }
 
 void PagePacker::add_duties(std::size_t person, const ActuatorFrame& felt) {
@@ -113,17 +118,17 @@ void PagePacker::add_duties(std::size_t person, const ActuatorFrame& felt) {
   }
 }
 
-std::uint64_t PagePacker::contacts() const {
-  std::uint64_t sum = 0;
-  for (const Person& person : people_) sum += person.contacts.row.size();
-  return sum;
+nlohmann::ordered_json PagePacker::finish_body(std::size_t body) {
+  const Avatar& avatar = people_[body].who.avatar;
+  const std::string prefix = fmt::format("body_{}/", body + 1);
+  add_mesh(arrays_, prefix, avatar);
+  const std::vector<double> steps = poses_[body].finish(arrays_, prefix);
+  return {{"facing_deg", poses_[body].facing_deg()}, {"joints", avatar.palette.size()}, {"matrix_step", steps}};
 }
 
-nlohmann::ordered_json PagePacker::finish_person(Person& person, const std::string& prefix) {
+nlohmann::ordered_json PagePacker::finish_person(const Person& person, const std::string& prefix) {
   const ActuatorMap& map = person.who.map;
-  add_mesh(arrays_, prefix, person.who.avatar);
   arrays_.add(prefix + "map_actuator", map.actuator, 1);
-  const std::vector<double> steps = person.poses.finish(arrays_, prefix);
   const Contacts& contacts = person.contacts;
   arrays_.add(prefix + "contact_row", contacts.row, 1);
   arrays_.add(prefix + "contact_collider", contacts.collider);
@@ -137,9 +142,8 @@ nlohmann::ordered_json PagePacker::finish_person(Person& person, const std::stri
   arrays_.add(prefix + "duty_actuator", person.duties.actuator);
   arrays_.add(prefix + "duty", person.duties.duty);
   return {{"name", person.who.name},
-          {"facing_deg", person.poses.facing_deg()},
-          {"joints", person.who.avatar.palette.size()},
-          {"matrix_step", steps},
+          {"body", person.who.body},
+          {"side", person.who.side},
           {"actuators", actuators_of(map)},
           {"unmapped", css(plot::region_colour(0, map.actuator_count))},
           {"map", {{"width", map.width}, {"height", map.height}, {"by_triangle", map.triangle_count > 0}}}};
@@ -149,18 +153,23 @@ PageContent PagePacker::finish() {
   arrays_.add("frame_index", frame_index_, 1);
   arrays_.add("time_ns", time_ns_, 1);
   colliders_.finish(arrays_);
-  nlohmann::ordered_json people = nlohmann::ordered_json::array();
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
   double error_mm = 0;
-  for (std::size_t i = 0; i < people_.size(); ++i) {
-    people.push_back(finish_person(people_[i], fmt::format("person_{}/", i + 1)));
-    error_mm = std::max(error_mm, people_[i].poses.largest_error_mm());
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    bodies.push_back(finish_body(i));
+    error_mm = std::max(error_mm, poses_[i].largest_error_mm());
   }
+  nlohmann::ordered_json people = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < people_.size(); ++i)
+    people.push_back(finish_person(people_[i], fmt::format("person_{}/", i + 1)));
   PageContent content;
   content.head = {
       {"version", 1},
       {"unit_m", kPageUnit_m},
       {"origin_m", {origin_m_.x, origin_m_.y, origin_m_.z}},
       {"error_mm", {{"skin", tenths_up(error_mm)}, {"colliders", tenths_up(1e3 * ColliderTracks::kError_m)}}},
+      {"sides", sides_},
+      {"bodies", std::move(bodies)},
       {"people", std::move(people)},
       {"arrays", arrays_.table()},
       {"bytes", arrays_.byte_count()}};

@@ -20,11 +20,13 @@
 
 namespace vestige {
 
-/// A person of a page.
+/// A person of a page, as one detector and one map see them. A page with two sides has each person twice.
 struct PagePerson {
   std::string name;  ///< empty: the trace names nobody
   const Avatar& avatar;
   const ActuatorMap& map;
+  std::size_t body = 0;  ///< the person of the trace, counted from 0
+  std::size_t side = 0;  ///< counted from 0
 };
 
 /// What a page carries.
@@ -37,18 +39,19 @@ struct PageContent {
 /// `ColliderTracks`). Contacts and duties are kept exactly.
 class PagePacker {
  public:
-  /// Keeps references to avatars and maps. `collider_ids`: all of the trace, ascending.
-  PagePacker(std::span<const PagePerson> people, std::span<const std::uint32_t> collider_ids);
+  /// Keeps references to avatars and maps. `people`: first all of the first side. `sides`: what their titles are; none
+  /// if there is one side. `collider_ids`: all of the trace, ascending.
+  PagePacker(std::span<const PagePerson> people, std::vector<std::string> sides,
+             std::span<const std::uint32_t> collider_ids);
 
   /// Takes the next frame of the trace.
   void add(const TraceFrame& frame);
-  /// Takes what was found on a person, counted from 0, in the frame taken last. The row must carry triangle, t,
-  /// barycentric, position and side.
-  void add_contacts(std::size_t person, const DetectorFrame& frame, const ContactRow& row);
+  /// Takes what was found on a person, by the place in `people`, in the frame taken last. The row must carry triangle,
+  /// t, barycentric, position and side. Returns how many contacts these are.
+  std::size_t add_contacts(std::size_t person, const DetectorFrame& frame, const ContactRow& row);
   /// Takes the duties of a person in the frame taken last.
   void add_duties(std::size_t person, const ActuatorFrame& felt);
 
-  std::uint64_t contacts() const;
   /// Returns head and data. The head has people, arrays, and how exact the picture is.
   PageContent finish();
 
@@ -68,15 +71,17 @@ class PagePacker {
   };
   struct Person {
     PagePerson who;
-    PoseKeys poses;
     Contacts contacts = {};
     Duties duties = {};
   };
 
   void find_origin(const TraceFrame& frame);
-  nlohmann::ordered_json finish_person(Person& person, const std::string& prefix);
+  nlohmann::ordered_json finish_body(std::size_t body);
+  nlohmann::ordered_json finish_person(const Person& person, const std::string& prefix);
 
   std::vector<Person> people_;
+  std::vector<std::string> sides_;
+  std::vector<PoseKeys> poses_;  ///< of each body
   ColliderTracks colliders_;
   bool has_origin_ = false;
   glm::dvec3 origin_m_ = glm::dvec3(0);

@@ -13,8 +13,9 @@ constexpr PersonFlag kMapFlag = {"--map", "map", "FILE.png"};
 
 }  // namespace
 
-void add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::string& group) {
-  verb.add_option("--map", maps,
+CLI::Option* add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::string& group) {
+  return verb
+      .add_option("--map", maps,
                   "Use another actuator map than the trace's: of a trace of several people, that of person K; repeat "
                   "for more people")
       ->group(group)
@@ -52,10 +53,11 @@ ActuatorMap read_map(const std::string& map, const TracedPerson& person, const s
   return read;
 }
 
-void use_maps(const std::vector<PersonValue>& maps, OpenTrace& trace, const std::string& name, Verbosity verbosity) {
+void use_maps(const std::vector<PersonValue>& maps, std::span<TracedPerson> people, const std::string& trace,
+              Verbosity verbosity) {
   for (const PersonValue& map : maps) {
-    TracedPerson& person = trace.people[person_of(map, kMapFlag, trace.people.size(), name)];
-    person.map = read_map(map.value, person, name, verbosity);
+    TracedPerson& person = people[person_of(map, kMapFlag, people.size(), trace)];
+    person.map = read_map(map.value, person, trace, verbosity);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 namespace vestige::cli {
 
 /// Adds --map of a verb that replays traces.
-void add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::string& group);
+CLI::Option* add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::string& group);
 
 /// Reads the values of --map of a verb that replays traces. Throws `UsageError` as `parse_person_values`.
 std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts);
@@ -25,7 +26,8 @@ ActuatorMap read_map(const std::string& map, const TracedPerson& person, const s
 /// Returns what is odd about a map that a person has.
 std::vector<std::string> map_warnings(const ActuatorMap& map, const TracedPerson& person, const SceneNames& names);
 
-/// Gives people the maps of --map. Throws `UsageError` as `person_of`.
-void use_maps(const std::vector<PersonValue>& maps, OpenTrace& trace, const std::string& name, Verbosity verbosity);
+/// Gives the people of a trace the maps of --map. Throws `UsageError` as `person_of`.
+void use_maps(const std::vector<PersonValue>& maps, std::span<TracedPerson> people, const std::string& trace,
+              Verbosity verbosity);
 
 }  // namespace vestige::cli

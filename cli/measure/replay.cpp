@@ -222,7 +222,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
         trace.people[i].avatar,
         fmt::format("{}, {}", options.trace, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
   check_people(timed_maps, trace, options);
-  use_maps(maps, trace, options.trace, verbosity);
+  use_maps(maps, trace.people, options.trace, verbosity);
   const ColliderShape shape = trace.reader.has_spheres() ? ColliderShape::kSpheres : ColliderShape::kPoints;
   Timelines timelines(options, trace);
   timelines.add_paths_to(outputs);
@@ -235,7 +235,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
   const std::optional<PickedPath> picked = pick(options, trace, collider_ids.size());
   DetectorTeam detectors(options.threads, [&] {
-    return make_detectors(picked ? picked->detector : options.choice.detector, options.choice, trace, planes);
+    return make_detectors(picked ? picked->detector : options.choice.detector, options.choice, trace.people, planes);
   });
   const Detector& detector = detectors.first();
   const bool ignores_radii = warn_of_ignored_radii(options, detector.name(), trace);

@@ -19,11 +19,11 @@ std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, st
                      frames, segments, *first);
 }
 
-PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice, const OpenTrace& trace,
-                               PlaneSet planes) {
+PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice,
+                               std::span<const TracedPerson> people, PlaneSet planes) {
   SharedContext context(choice.context, choice.device);
   PeopleDetectors detectors;
-  for (const TracedPerson& person : trace.people)
+  for (const TracedPerson& person : people)
     detectors.push_back(make_detector(name, context, choice, person.avatar, person.map, planes));
   return detectors;
 }
@@ -43,7 +43,7 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
       throw UsageError("--verify", fmt::format("'{}' would be compared with itself", options.verify),
                        "name another detector, or a file");
     verification.detectors = std::make_unique<DetectorTeam>(
-        options.threads, [&] { return make_detectors(options.verify, options.choice, trace, planes); });
+        options.threads, [&] { return make_detectors(options.verify, options.choice, trace.people, planes); });
   } else if (options.verify == "-" || options.verify == "auto") {
     throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
                      fmt::format("name {}, or a file that an earlier replay wrote", fmt::join(detector_names(), ", ")));

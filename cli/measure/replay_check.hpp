@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,8 @@
 namespace vestige::cli {
 
 /// Makes a detector for each person of a trace. They share an OpenGL context.
-PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice, const OpenTrace& trace,
-                               PlaneSet planes);
+PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice,
+                               std::span<const TracedPerson> people, PlaneSet planes);
 
 /// Says which poses and segments were not finite, and so fired nothing. Returns "" if all were finite.
 std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first);

@@ -78,7 +78,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   const std::vector<std::string> stamps = stamps_of(maps);
 
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
-  use_maps(maps, trace, options.trace, verbosity);
+  use_maps(maps, trace.people, options.trace, verbosity);
   const std::vector<WornVest> vests = vests_of(options, ports, maps, stamps, trace.people.size());
   for (auto vest = vests.begin() + 1; vest != vests.end(); ++vest) outputs.push_back(vest->log);
   check_outputs(outputs, inputs, options.common);  // again, with the logs of the other people

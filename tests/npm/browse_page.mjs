@@ -5,7 +5,7 @@ import { open } from "./browser.mjs";
 const options = JSON.parse(process.argv[3] ?? "{}");
 const { browser, page, complaints, requests } = await open(process.argv[2], options);
 
-/** What stands on the page, and how much of the picture is drawn: of its whole, and of its middle. */
+/** What stands on the page, and how much of the picture is drawn: of its whole and of parts of it. */
 function look() {
   const text = (id) => document.getElementById(id).textContent;
   const rows = (id) => [...document.querySelectorAll(`#${id} tr`)].slice(1).map((row) => [...row.cells].map((cell) => cell.textContent));
@@ -34,7 +34,9 @@ function look() {
     actuators: [...document.querySelectorAll("#of-actuator option")].map((option) => option.textContent),
     play: text("play"), speed: document.getElementById("speed").selectedOptions[0]?.textContent,
     help: document.getElementById("help").open, images: document.querySelectorAll("img").length,
-    width: document.documentElement.scrollWidth, picture: drawn(0, 1), middle: drawn(0.4, 0.2),
+    width: document.documentElement.scrollWidth, picture: drawn(0, 1), middle: drawn(0.4, 0.2), left: drawn(0, 0.5), right: drawn(0.5, 0.5),
+    sides: [...document.querySelectorAll("#sides span")].map((side) => side.textContent),
+    alone: [...document.querySelectorAll(".alone td:last-child")].map((cell) => cell.textContent),
   };
 }
 

@@ -141,7 +141,7 @@ class Body {
 
   /** The trace says where each joint's skin goes, so three.js has no bones to multiply: only their number matters. */
   bindPalette() {
-    const bones = Array.from({length: this.person.info.joints}, () => new THREE.Bone());
+    const bones = Array.from({length: this.person.body.joints}, () => new THREE.Bone());
     const skeleton = new THREE.Skeleton(bones, bones.map(() => new THREE.Matrix4()));
     skeleton.update = () => {
       skeleton.boneMatrices.set(this.person.palette);

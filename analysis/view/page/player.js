@@ -53,10 +53,15 @@ class Player {
 
   describe() {
     const {head, rows, people, colliders} = this.trace;
-    const contacts = people.reduce((sum, person) => sum + person.contact_row.length, 0);
+    const contacts = this.trace.sides.map((side) => side.reduce((sum, person) => sum + person.contact_row.length, 0));
+    const alone = people.reduce((sum, person) => sum + person.alone.reduce((a, b) => a + b, 0), 0);
+    byId("sides").append(...head.sides.map((title) => element("span", title)));
     const named = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
     byId("about").textContent = [
-      named(rows, "frame"), named(colliders.id.length, "collider"), named(contacts, "contact"), ...head.about].join(" · ");
+      named(rows, "frame"), named(colliders.id.length, "collider"),
+      head.sides.length > 1 ? `${contacts.map((count) => count.toLocaleString("en")).join(" and ")} contacts, ${alone} on one side alone`
+        : named(contacts[0], "contact"),
+      ...head.about].join(" · ");
     byId("precision").textContent =
       "Contacts and duties are exact. Poses and the paths of colliders are thinned for the picture: skin is at most " +
       `${head.error_mm.skin} mm from its place, and colliders are at most ${head.error_mm.colliders} mm from theirs.`;
@@ -117,6 +122,7 @@ class Player {
       ["End", ["End", "last frame", seekRow(() => this.trace.rows - 1)]],
       ["n", ["N", "next contact", click("contact-after")]],
       ["p", ["P", "contact before", click("contact-before")]],
+      ...(this.trace.head.sides.length > 1 ? [["d", ["D", "next contact on one side alone", () => this.toDifference()]]] : []),
       ["[", ["[", "slower", () => this.changeSpeed(-1)]],
       ["]", ["]", "faster", () => this.changeSpeed(1)]],
       ["+", ["+", "less time in the timeline", () => this.raster.zoom(1 / 2, this.time_s)]],
@@ -238,6 +244,12 @@ class Player {
     if (row !== null) this.seekRow(row);
   }
 
+  toDifference() {
+    this.pause();
+    const row = this.trace.rowOfContact(this.row, 1, (person, i) => person.alone[i]);
+    if (row !== null) this.seekRow(row);
+  }
+
   resize() {
     if (this.scene) this.scene.resize();
     this.raster.resize();
@@ -284,6 +296,7 @@ class Player {
     const cells = [[`${this.trace.colliders.id[person.contact_collider[i]]}`, "n"], [`${person.contact_triangle[i]}`, "n"],
                    [person.contact_t[i].toFixed(3), "n"], [person.who + person.actuatorName(person.contact_actuator[i]), ""]];
     const at = [...person.contact_position_m.subarray(i * 3, i * 3 + 3)].join(", ");
+    cells.alone = person.alone[i] === 1;
     cells.title = `t ${person.contact_t[i]}, at ${at} m, side ${person.contact_side[i]}`;
     return cells;
   }
@@ -296,6 +309,7 @@ class Player {
     for (const cells of rows) {
       const row = tableRow("td", cells);
       if (cells.title) row.title = cells.title;
+      if (cells.alone) row.className = "alone";
       table.append(row);
     }
     byId(id).append(table);
@@ -323,6 +337,7 @@ class Player {
       "So here is a still picture of each frame; the timeline and all numbers work.";
     byId("failure").hidden = false;
     const still = new Still(byId("scene"), this.trace);
+    byId("sides").replaceChildren();  // a still shows the first side
     this.drawStill = () => still.draw(this.time_s, this.stillView || "front");
   }
 }

@@ -129,11 +129,16 @@ class Raster {
 
   /** At most one tick for each pixel of a line. */
   paintContacts(context, ink) {
-    context.fillStyle = ink;
+    for (const alone of [0, 1]) this.paintTicks(context, alone, alone ? "#d9005a" : ink);
+  }
+
+  paintTicks(context, alone, colour) {
+    context.fillStyle = colour;
     for (const person of this.trace.people) {
       const lineOf = new Map(this.lines.map((line, i) => [line.person === person ? line.number : -1, i]));
       const painted = new Map();
       for (let i = 0; i < person.contact_row.length; ++i) {
+        if (person.alone[i] !== alone) continue;
         const x = Math.round(this.xAt(this.trace.time_s[person.contact_row[i]]));
         const line = lineOf.get(person.contact_actuator[i]);
         if (x < this.left || x > this.width - 4 || painted.get(line) === x) continue;

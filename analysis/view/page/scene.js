@@ -10,21 +10,26 @@ const kViews = {front: 0, left: 90, back: 180, right: 270};  // degrees about +Y
 
 const kMarkVertexShader = `
 attribute float age;
+attribute float alone;
 uniform float pixels;
 varying float vAge;
+varying float vAlone;
 void main() {
   vAge = age;
+  vAlone = alone;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   gl_Position.z -= 0.002 * gl_Position.w;  // in front of the skin that it lies on
-  gl_PointSize = pixels * (1.0 - 0.6 * age);
+  gl_PointSize = pixels * (1.0 - 0.6 * age) * (1.0 + 0.5 * alone);
 }`;
 
 const kMarkFragmentShader = `
 varying float vAge;
+varying float vAlone;
 void main() {
   float r = 2.0 * length(gl_PointCoord - 0.5);
   if (r > 1.0) discard;
-  gl_FragColor = vec4(vec3(r < 0.55 ? 1.0 : 0.05), 1.0 - vAge);
+  vec3 rim = mix(vec3(0.05), vec3(0.85, 0.0, 0.35), vAlone);
+  gl_FragColor = vec4(r < 0.55 ? vec3(1.0) : rim, 1.0 - vAge);
 }`;
 
 const kTrailVertexShader = `
@@ -41,10 +46,11 @@ varying float vStrength;
 void main() { gl_FragColor = vec4(colour, 0.6 * vStrength); }`;
 
 /** A geometry whose numbers change with every picture. */
-function movingGeometry(points, name) {
+function movingGeometry(points, ...names) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points * 3), 3).setUsage(THREE.DynamicDrawUsage));
-  geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(points), 1).setUsage(THREE.DynamicDrawUsage));
+  for (const name of names)
+    geometry.setAttribute(name, new THREE.BufferAttribute(new Float32Array(points), 1).setUsage(THREE.DynamicDrawUsage));
   return geometry;
 }
 
@@ -55,12 +61,12 @@ class ContactMarks {
       vertexShader: kMarkVertexShader, fragmentShader: kMarkFragmentShader, transparent: true, depthWrite: false,
       uniforms: {pixels: {value: 12}},
     });
-    this.mesh = new THREE.Points(movingGeometry(kMostMarks, "age"), this.material);
+    this.mesh = new THREE.Points(movingGeometry(kMostMarks, "age", "alone"), this.material);
     this.mesh.frustumCulled = false;
   }
 
   update(trace, time_s) {
-    const {position, age} = this.mesh.geometry.attributes;
+    const {position, age, alone} = this.mesh.geometry.attributes;
     let count = 0;
     for (const person of this.people) {
       const end = person.contactsOf(trace.rowAt(time_s))[1];
@@ -68,10 +74,11 @@ class ContactMarks {
         const old = (time_s - trace.time_s[person.contact_row[i]]) / kFade_s;
         if (old > 1) break;
         position.array.set(person.contactPlace(i), count * 3);
+        alone.array[count] = person.alone[i];
         age.array[count++] = old;
       }
     }
-    position.needsUpdate = age.needsUpdate = true;
+    position.needsUpdate = age.needsUpdate = alone.needsUpdate = true;
     this.mesh.geometry.setDrawRange(0, count);
   }
 }
@@ -148,16 +155,26 @@ class Scene {
     this.orbit = new THREE.OrbitControls(this.camera, canvas);
     this.orbit.enableKeys = false;  // the page's own keys
     this.follows = true;
-    this.bodies = trace.people.map((person) => new Body(person));
+    this.sides = trace.sides.map((people) => this.makeSide(people));
     this.colliders = new ColliderShapes(trace.colliders);
-    this.marks = new ContactMarks(trace.people);
     const light = new THREE.DirectionalLight(0xffffff, 0.6);
     this.camera.add(light);
     this.scene.add(this.camera, new THREE.AmbientLight(0xffffff, 0.6), this.colliders.balls, this.colliders.trails,
-                   this.marks.mesh, ...this.bodies.map((body) => body.mesh));
+                   ...this.sides.map(({group}) => group));
     this.frameBodies();
     canvas.addEventListener("webglcontextrestored", () => this.resize());
   }
+
+  /** What one side shows and the other does not. */
+  makeSide(people) {
+    const bodies = people.map((person) => new Body(person));
+    const marks = new ContactMarks(people);
+    const group = new THREE.Group();
+    group.add(marks.mesh, ...bodies.map((body) => body.mesh));
+    return {bodies, marks, group};
+  }
+
+  get bodies() { return this.sides.flatMap(({bodies}) => bodies); }
 
   /** Finds how large the people are and where they stand, in the first frame. */
   frameBodies() {
@@ -187,7 +204,7 @@ class Scene {
 
   /** Turns the camera: "front", "back", "left" or "right" of the first person. */
   look(view) {
-    const angle = (kViews[view] + this.trace.people[0].info.facing_deg) * Math.PI / 180;
+    const angle = (kViews[view] + this.trace.people[0].body.facing_deg) * Math.PI / 180;
     const narrow = Math.min(1, this.camera.aspect);
     const away_m = this.size_m * 1.7 / Math.max(0.35, narrow);
     const target = this.middle.clone().add(this.root);
@@ -204,14 +221,14 @@ class Scene {
     const ratio = Math.min(2, window.devicePixelRatio || 1);
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
-    this.marks.material.uniforms.pixels.value = 12 * ratio;
-    this.camera.aspect = width / Math.max(1, height);
+    for (const {marks} of this.sides) marks.material.uniforms.pixels.value = 12 * ratio;
+    this.camera.aspect = width / this.sides.length / Math.max(1, height);
     this.camera.updateProjectionMatrix();
   }
 
   show(layer, visible) {
     const parts = {body: this.bodies.map((body) => body.mesh), colliders: [this.colliders.balls], trails: [this.colliders.trails],
-                   contacts: [this.marks.mesh], floor: [this.grid]};
+                   contacts: this.sides.map(({marks}) => marks.mesh), floor: [this.grid]};
     for (const part of parts[layer] || []) part.visible = visible;
     const uniforms = {regions: "showRegions", motors: "showMotors"};
     if (layer in uniforms) for (const body of this.bodies) body.material.uniforms[uniforms[layer]].value = visible ? 1 : 0;
@@ -225,7 +242,17 @@ class Scene {
     }
     this.followRoot();
     this.colliders.update(time_s);
-    this.marks.update(this.trace, time_s);
+    for (const {marks} of this.sides) marks.update(this.trace, time_s);
+    this.sides.forEach((_, i) => this.drawSide(i));
+  }
+
+  /** Draws one side in its part of the canvas. All see the same camera. */
+  drawSide(shown) {
+    const width = this.canvas.clientWidth / this.sides.length;
+    this.sides.forEach(({group}, i) => { group.visible = i === shown; });
+    this.renderer.setViewport(shown * width, 0, width, this.canvas.clientHeight);
+    this.renderer.setScissor(shown * width, 0, width, this.canvas.clientHeight);
+    this.renderer.setScissorTest(this.sides.length > 1);
     this.renderer.render(this.scene, this.camera);
   }
 

@@ -46,8 +46,8 @@ class Still {
     this.canvas.width = width;
     this.canvas.height = height;
     const context = this.canvas.getContext("2d");
-    const angle = (kViews[view] + this.trace.people[0].info.facing_deg) * Math.PI / 180;
-    const people = this.trace.people.filter(({hasPoses}) => hasPoses).map((person) => {
+    const angle = (kViews[view] + this.trace.people[0].body.facing_deg) * Math.PI / 180;
+    const people = this.trace.sides[0].filter(({hasPoses}) => hasPoses).map((person) => {
       person.pose(time_s);
       return {person, points: this.project(person, angle)};
     });
@@ -105,7 +105,7 @@ class Still {
       if (this.trace.colliders.place(i, time_s, place)) dot(place, 3);
     context.fillStyle = "#ffffff";
     context.strokeStyle = "#000000";
-    for (const person of this.trace.people) {
+    for (const person of this.trace.sides[0]) {
       const [first, end] = person.contactsOf(this.trace.rowAt(time_s));
       for (let i = first; i < end; ++i) dot(person.contactPlace(i), 4);
     }

@@ -2,18 +2,32 @@
 // The trace at any time: the bodies' poses, their contacts and motors, and the colliders' places. Nothing here draws.
 // A row is a frame's place among the frames of the page, from 0 on; a frame's number is the trace's own.
 
+const kSameContact_s = 0.035;  // as `vestige accuracy` takes two contacts for one
+
 /** The skin of one person, and what happens to it. */
 class Person {
-  constructor(info, arrays, prefix, scene) {
+  constructor(number, arrays, scene) {
+    const info = scene.head.people[number];
     this.info = info;
+    this.body = scene.head.bodies[info.body];
     this.scene = scene;
-    this.who = scene.head.people.length > 1 ? `${info.name}: ` : "";  // goes before the names of actuators
-    for (const [name, values] of Object.entries(arrays))
-      if (name.startsWith(prefix)) this[name.slice(prefix.length)] = values;
-    this.palette = new Float32Array(info.joints * 16);
-    for (let joint = 0; joint < info.joints; ++joint) this.palette[joint * 16 + 15] = 1;
+    this.who = this.prefix();
+    for (const prefix of [`body_${info.body + 1}/`, `person_${number + 1}/`])
+      for (const [name, values] of Object.entries(arrays))
+        if (name.startsWith(prefix)) this[name.slice(prefix.length)] = values;
+    this.palette = new Float32Array(this.body.joints * 16);
+    for (let joint = 0; joint < this.body.joints; ++joint) this.palette[joint * 16 + 15] = 1;
     this.root = [0, 0, 0];
     this.changes = this.changesByActuator();
+  }
+
+  /** What goes before the names of actuators: the side, if there are two, and the person, if there are several. */
+  prefix() {
+    const {sides, bodies} = this.scene.head;
+    const parts = [];
+    if (sides.length > 1) parts.push(sides[this.info.side]);
+    if (bodies.length > 1) parts.push(this.info.name);
+    return parts.map((part) => `${part}: `).join("");
   }
 
   /** Rows and duties of each actuator's changes. */
@@ -49,11 +63,11 @@ class Person {
       const [a, b] = [this.pose_root[before * 3 + axis], this.pose_root[after * 3 + axis]];
       this.root[axis] = (a + (b - a) * part) * this.scene.unit_m;
     }
-    const size = this.info.joints * 12;
+    const size = this.body.joints * 12;
     for (let i = 0; i < size; ++i) {
       const [a, b] = [this.pose_matrix[before * size + i], this.pose_matrix[after * size + i]];
       const column = Math.floor(i / 3);
-      const step = this.info.matrix_step[2 * (column >> 2) + (column % 4 === 3 ? 1 : 0)];
+      const step = this.body.matrix_step[2 * (column >> 2) + (column % 4 === 3 ? 1 : 0)];
       this.palette[column * 4 + (i % 3)] = (a + (b - a) * part) * step;
     }
   }
@@ -149,7 +163,39 @@ class Trace {
     this.frame = arrays.frame_index;
     this.time_s = Float64Array.from(arrays.time_ns, (ns) => ns / 1e9);
     this.colliders = new Colliders(arrays, this);
-    this.people = head.people.map((info, i) => new Person(info, arrays, `person_${i + 1}/`, this));
+    this.people = head.people.map((_, i) => new Person(i, arrays, this));
+    for (const person of this.people) person.alone = this.contactsAlone(person);
+  }
+
+  /** The sides of the page, each a list of people. */
+  get sides() { return Array.from({length: Math.max(1, this.head.sides.length)}, (_, i) => this.people.filter((p) => p.info.side === i)); }
+
+  /**
+   * Whether each contact of a person is found, or felt, on that person's side alone: within `kSameContact_s`, the other
+   * side has no contact of the same collider, or none with an actuator where this one has one.
+   */
+  contactsAlone(person) {
+    const alone = new Uint8Array(person.contact_row.length);
+    const other = this.people.find(({info}) => info.body === person.info.body && info.side !== person.info.side);
+    if (other === undefined) return alone;
+    const key = (of, i) => `${of.contact_collider[i]} ${of.contact_actuator[i] > 0}`;
+    const times = new Map();
+    for (let i = 0; i < other.contact_row.length; ++i) {
+      if (!times.has(key(other, i))) times.set(key(other, i), []);
+      times.get(key(other, i)).push(this.time_s[other.contact_row[i]]);
+    }
+    const has = (name, time_s) => {
+      const found = times.get(name) || [];
+      const near = found[lastUpTo(found, time_s + kSameContact_s)];
+      return near !== undefined && near >= time_s - kSameContact_s;
+    };
+    for (let i = 0; i < alone.length; ++i) {
+      const time_s = this.time_s[person.contact_row[i]];
+      const felt = has(`${person.contact_collider[i]} true`, time_s);
+      const found = felt || has(`${person.contact_collider[i]} false`, time_s);
+      alone[i] = person.contact_actuator[i] > 0 ? !felt : !found;
+    }
+    return alone;
   }
 
   get rows() { return this.frame.length; }

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::Contains;
-using ::testing::Ge;
+using ::testing::ElementsAre;
 using ::testing::Gt;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -278,6 +278,49 @@ TEST_F(View, NamesStayText) {
   EXPECT_EQ(seen[0]["actuators"][1], "<img src=x onerror=alert(2)>");
   EXPECT_EQ(seen[0]["actuators"][2], "</script><!--<b>");
   EXPECT_EQ(seen[0]["images"], 0);
+}
+
+TEST_F(View, TwoMapsStandSideBySide) {
+  make("--maps paper6 none");
+  const json seen = browse({{"steps", {kSee, press("d")}}});
+  EXPECT_THAT(seen[0]["left"]["colourful"].get<double>(), Gt(0.01));
+  EXPECT_THAT(seen[0]["right"]["colourful"].get<double>(), Lt(0.002)) << "no regions";
+  EXPECT_THAT(seen[0]["right"]["opaque"].get<double>(), Gt(0.05));
+  EXPECT_EQ(seen[0]["sides"], json({"paper6", "none"}));
+  EXPECT_THAT(seen[1]["alone"], ElementsAre(HasSubstr("paper6: "))) << "felt on the left only";
+}
+
+TEST_F(View, MarksWhatOneDetectorMisses) {
+  make("--detectors boxes,cpu --json view.json", "--count 100 --duration 1");
+  const json sides = json_in("view.json")["sides"];
+  EXPECT_EQ(sides[1]["detector"], "cpu");
+  EXPECT_NE(sides[0]["contacts"], sides[1]["contacts"]);
+  json steps = json::array();
+  for (int i = 0; i < 10; ++i) steps.push_back(press("d"));
+  int frame = 0;
+  for (const json& seen : browse({{"steps", steps}})) {
+    EXPECT_THAT(seen["alone"], Not(IsEmpty()));
+    EXPECT_THAT(seen["frame"].get<int>(), Gt(frame));
+    frame = seen["frame"].get<int>();
+  }
+  make("--force --detectors exact,cpu", "--force --count 20 --duration 0.1");
+  const json same = browse({{"steps", {press("d")}}});
+  EXPECT_EQ(same[0]["frame"], 0) << "no contact is on one side alone";
+  EXPECT_THAT(same[0]["about"].get<std::string>(), HasSubstr("0 on one side alone"));
+}
+
+TEST_F(View, RefusesSidesThatCannotBe) {
+  record_small();
+  for (const auto& [flags, words] :
+       std::vector<std::pair<std::string, std::string>>{{"--detectors cpu", "two sides"},
+                                                        {"--detectors cpu,exact,boxes", "two sides"},
+                                                        {"--detectors cpu,cqu", "did you mean 'cpu'"},
+                                                        {"--detectors cpu,exact --maps paper6 torso40", "excludes"},
+                                                        {"--detectors cpu,exact --detector cpu", "excludes"},
+                                                        {"--maps paper6 torso40 --map none", "excludes"},
+                                                        {"--maps paper6 paper6", "the same"}})
+    expect_failure("vestige view small.mcap " + flags, 2, {words}, "small.html");
+  expect_failure("vestige view small.mcap --maps paper6 nowhere.png", 1, {"nowhere.png"}, "small.html");
 }
 
 TEST_F(View, FitsAPhone) {

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/view/page_packer.hpp"
+#include "cli/choices/detectors.hpp"
+#include "cli/choices/law_choice.hpp"
+#include "cli/choices/person_maps.hpp"
+#include "cli/choices/scene.hpp"
+#include "cli/measure/replay_check.hpp"
+#include "detector/actuators/law_maker.hpp"
+
+namespace vestige::cli {
+
+struct ViewOptions {
+  CommonOptions common;
+  DetectorChoice choice;
+  LawFlags law;
+  std::vector<std::string> map;   ///< values of --map
+  std::vector<std::string> maps;  ///< two values of --maps, or none
+  std::string detectors;          ///< the value of --detectors, or empty
+  std::string trace;
+  std::string output;
+  bool open = false;
+};
+
+/// How a side of the page sees the trace. A page has one side or two.
+struct SideChoice {
+  std::string title;  ///< empty if there is one side
+  std::string detector;
+  std::vector<PersonValue> maps;  ///< in the place of the trace's
+};
+
+/// Reads --map, --maps, --detector and --detectors. Throws `UsageError`.
+std::vector<SideChoice> side_choices(const ViewOptions& options);
+
+/// A side of the page: its people and what finds their contacts and duties.
+struct ViewSide {
+  std::string title;
+  std::vector<TracedPerson> people;
+  std::vector<std::optional<DriveMaker>> drives;  ///< of each person; empty for a person without an actuator
+  PeopleDetectors detectors;
+};
+
+/// Makes the sides of a trace. Throws `UsageError` or `Error` if a map, a law or a detector does not suit it.
+std::vector<ViewSide> make_sides(const std::vector<SideChoice>& choices, OpenTrace& trace, const ViewOptions& options);
+
+/// The people of all sides, and the titles of two sides.
+std::vector<PagePerson> page_people(const std::vector<ViewSide>& sides);
+std::vector<std::string> side_titles(const std::vector<ViewSide>& sides);
+
+/// What was found on the way through a trace.
+struct Findings {
+  std::vector<std::uint64_t> contacts;  ///< of each side
+  std::vector<std::string> notes;       ///< sentences about what is not finite
+};
+
+/// Reads the whole trace into `packer`, which is for `page_people`. Throws `Error` if Ctrl-C is pressed.
+Findings pack_frames(OpenTrace& trace, const std::vector<ViewSide>& sides, PagePacker& packer,
+                     const ViewOptions& options);
+
+}  // namespace vestige::cli
