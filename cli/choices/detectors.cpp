@@ -204,4 +204,13 @@ std::unique_ptr<Detector> make_detector(const std::string& name, SharedContext& 
   return planes.has(Plane::kDepth) ? with_depth(std::move(detector), avatar) : std::move(detector);
 }
 
+std::vector<std::unique_ptr<Detector>> make_detectors(const std::string& name, const DetectorChoice& choice,
+                                                      std::span<const TracedPerson> people, PlaneSet planes) {
+  SharedContext context(choice.context, choice.device);
+  std::vector<std::unique_ptr<Detector>> detectors;
+  for (const TracedPerson& person : people)
+    detectors.push_back(make_detector(name, context, choice, person.avatar, person.map, planes));
+  return detectors;
+}
+
 }  // namespace vestige::cli

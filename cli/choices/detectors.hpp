@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "cli/choices/scene.hpp"
 #include "cli/terminal.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
@@ -111,5 +113,9 @@ class SharedContext {
 /// As above, in a shared context.
 std::unique_ptr<Detector> make_detector(const std::string& name, SharedContext& context, const DetectorChoice& choice,
                                         const Avatar& avatar, const ActuatorMap& map, PlaneSet planes);
+
+/// Makes a detector for each person of a trace, in one context.
+std::vector<std::unique_ptr<Detector>> make_detectors(const std::string& name, const DetectorChoice& choice,
+                                                      std::span<const TracedPerson> people, PlaneSet planes);
 
 }  // namespace vestige::cli

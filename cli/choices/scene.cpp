@@ -25,6 +25,20 @@ void warn_all(const std::vector<std::string>& warnings, Verbosity verbosity) {
   for (const std::string& warning : warnings) warn(warning, verbosity);
 }
 
+/// Throws `Error` as `require_surfaces`. `name` is the avatar's name.
+void require_surface(const Avatar& avatar, const std::string& name) {
+  constexpr double kPoint_m = 1e-6;
+  const auto scales = [](const Animation& animation) {
+    return std::ranges::find(animation.channels, AnimatedProperty::kScale, &AnimationChannel::property) !=
+           animation.channels.end();
+  };
+  if (rest_box(avatar).longest_side() > kPoint_m || std::ranges::any_of(avatar.animations, scales)) return;
+  throw Error(
+      name, "its whole skin lies in one point at rest, so it has no surface to touch",
+      "set the scale of its root node to 1 in the modelling program; an avatar that is hidden at times needs an "
+      "animation of that scale");
+}
+
 Scene scene_of(std::vector<std::byte> avatar_glb, const std::string& name, Verbosity verbosity) {
   Scene scene;
   scene.avatar_glb = std::move(avatar_glb);
@@ -63,19 +77,6 @@ std::string attachment(const std::string& path, AttachmentKind kind, std::size_t
 }
 
 }  // namespace
-
-void require_surface(const Avatar& avatar, const std::string& name) {
-  constexpr double kPoint_m = 1e-6;
-  const auto scales = [](const Animation& animation) {
-    return std::ranges::find(animation.channels, AnimatedProperty::kScale, &AnimationChannel::property) !=
-           animation.channels.end();
-  };
-  if (rest_box(avatar).longest_side() > kPoint_m || std::ranges::any_of(avatar.animations, scales)) return;
-  throw Error(
-      name, "its whole skin lies in one point at rest, so it has no surface to touch",
-      "set the scale of its root node to 1 in the modelling program; an avatar that is hidden at times needs an "
-      "animation of that scale");
-}
 
 Scene load_scene(const std::string& avatar, const std::string& map, const FacingChoice& facing, Verbosity verbosity,
                  const std::string& recorded_facing) {
@@ -130,6 +131,21 @@ OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity, People allowe
     if (verbosity == Verbosity::kVerbose) warn_all(avatar.warnings, verbosity);
   }
   if (!reader.recovered().empty()) warn(fmt::format("{}: {}", path, reader.recovered()), verbosity);
+}
+
+void require_surfaces(const OpenTrace& trace, const std::string& file) {
+  for (std::size_t i = 0; i < trace.people.size(); ++i)
+    require_surface(trace.people[i].avatar, attachment(file, AttachmentKind::kAvatar, i));
+}
+
+std::string before_person(const OpenTrace& trace, std::size_t person) {
+  return trace.people.size() == 1 ? "" : trace.people[person].name + ": ";
+}
+
+std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first) {
+  if (!first) return "";
+  return fmt::format("{} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
+                     frames, segments, *first);
 }
 
 int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity) {

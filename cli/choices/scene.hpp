@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +27,6 @@ struct Scene {
 
   TracePerson person() const { return {avatar, {avatar_glb, map_png, map_json}, name}; }
 };
-
-/// Throws `Error` if the avatar is one point at rest, unless an animation scales it. What touches the point touches all
-/// triangles, which takes minutes to decide. `name` is the avatar's name in the error.
-void require_surface(const Avatar& avatar, const std::string& name);
 
 /// `avatar` is "builtin" or a file. `map` is "builtin", "none", a layout's name, or a PNG file, whose sidecar is the
 /// .json of the same name, if it exists. If `map` is empty, it is "builtin" for the built-in avatar, otherwise "none".
@@ -70,6 +68,17 @@ struct OpenTrace {
   TraceReader reader;
   std::vector<TracedPerson> people;
 };
+
+/// Throws `Error` if somebody's avatar is one point at rest, unless an animation scales it. What touches the point
+/// touches all triangles, which takes minutes to decide. `file` is the trace's name.
+void require_surfaces(const OpenTrace& trace, const std::string& file);
+
+/// Returns what stands before what is said about a person: "NAME: ", or "" if the trace has one person.
+std::string before_person(const OpenTrace& trace, std::size_t person);
+
+/// Says which poses and segments were not finite, and so fired nothing. `first`: the first frame with one. Returns ""
+/// if all were finite.
+std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first);
 
 /// Prints what was wrong with a trace to standard error. Returns kDataLost if anything was, otherwise kDone.
 int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity);

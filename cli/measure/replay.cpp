@@ -27,7 +27,6 @@
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/questions/placement_question.hpp"
-#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
@@ -89,8 +88,7 @@ void warn_of_gaps(const ReplayResult& result, const OpenTrace& trace, const std:
     const std::string note =
         describe_non_finite(person.non_finite_frames, person.non_finite_segments, person.first_non_finite);
     if (note.empty()) continue;
-    const std::string who = trace.people.size() > 1 ? fmt::format("{}: ", trace.people[i].name) : "";
-    warn(fmt::format("{}: {}{}", options.trace, who, note), verbosity);
+    warn(fmt::format("{}: {}{}", options.trace, before_person(trace, i), note), verbosity);
   }
 }
 
@@ -217,10 +215,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
 
   OpenTrace trace(options.trace, verbosity, People::kSeveral, options.threads);
   auto expected = read_expected(options.verify, trace.people.size());
-  for (std::size_t i = 0; i < trace.people.size(); ++i)
-    require_surface(
-        trace.people[i].avatar,
-        fmt::format("{}, {}", options.trace, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
+  require_surfaces(trace, options.trace);
   check_people(timed_maps, trace, options);
   use_maps(maps, trace.people, options.trace, verbosity);
   const ColliderShape shape = trace.reader.has_spheres() ? ColliderShape::kSpheres : ColliderShape::kPoints;

@@ -13,21 +13,6 @@
 
 namespace vestige::cli {
 
-std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first) {
-  if (!first) return "";
-  return fmt::format("{} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
-                     frames, segments, *first);
-}
-
-PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice,
-                               std::span<const TracedPerson> people, PlaneSet planes) {
-  SharedContext context(choice.context, choice.device);
-  PeopleDetectors detectors;
-  for (const TracedPerson& person : people)
-    detectors.push_back(make_detector(name, context, choice, person.avatar, person.map, planes));
-  return detectors;
-}
-
 std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify, std::size_t people) {
   if (verify.empty() || is_detector(verify)) return {};
   if (!verify.ends_with(".csv") && !has_hdf5_name(verify) && !is_hdf5(verify)) return {};

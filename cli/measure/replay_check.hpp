@@ -12,13 +12,6 @@
 
 namespace vestige::cli {
 
-/// Makes a detector for each person of a trace. They share an OpenGL context.
-PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice,
-                               std::span<const TracedPerson> people, PlaneSet planes);
-
-/// Says which poses and segments were not finite, and so fired nothing. Returns "" if all were finite.
-std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first);
-
 /// What --verify names: another detector, or a file that an earlier replay wrote. Without --verify, nothing.
 struct Verification {
   std::unique_ptr<DetectorTeam> detectors;

@@ -148,7 +148,7 @@ std::string summary_of(const Player& player, const OpenTrace& trace) {
   if (most.most_m > VmcSender::kToldDeviation_m)
     text += fmt::format("the skin that was sent lies up to {:.1f} mm from the trace's, at joint '{}'\n",
                         most.most_m * 1e3, person.avatar.nodes[most.node].name);
-  return trace.people.size() == 1 ? text : person.name + ": " + text;
+  return before_person(trace, player.person) + text;
 }
 
 /// Returns whether something of the trace could not be sent. Warnings have said so.

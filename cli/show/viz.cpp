@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "analysis/base/provenance.hpp"
-#include "analysis/run/detection_run.hpp"
 #include "analysis/viz/viewer_layout.hpp"
 #include "analysis/viz/viz_trace.hpp"
 #include "cli/choices/detectors.hpp"
@@ -15,12 +14,12 @@
 #include "cli/files/export_formats.hpp"
 #include "cli/files/rewriting.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/show/watchers.hpp"
 #include "cli/verbs.hpp"
 #include "detector/actuators/law_maker.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
-#include "traces/trace_file/trace_format.hpp"
 #include "traces/viz/viz_format.hpp"
 
 namespace vestige::cli {
@@ -37,68 +36,15 @@ struct VizOptions {
   double mesh_rate_hz = 15;
 };
 
-/// The people of a trace with what looks for contacts on them and lets them feel.
-class Watchers {
- public:
-  Watchers(const VizOptions& options, OpenTrace& trace);
-
-  DetectionRun run(OpenTrace& trace) const { return {people_, trace.reader.collider_ids()}; }
-  /// Returns what was found on everybody in the frame that `run` stepped to.
-  std::vector<SeenPerson> look(const TraceFrame& frame, const DetectionRun& run);
-  std::string detector() const { return detectors_.front()->name(); }
-
- private:
-  std::vector<std::unique_ptr<Detector>> detectors_;
-  std::vector<std::unique_ptr<ActuatorDrive>> drives_;  ///< null for a person without an actuator
-  std::vector<DetectedPerson> people_;
-};
-
-Watchers::Watchers(const VizOptions& options, OpenTrace& trace) {
-  PlaneSet planes = kHashedPlanes | Plane::kPosition;
-  for (const TracedPerson& person : trace.people) {
-    drives_.emplace_back();
-    if (person.map.actuator_count == 0) continue;
-    require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
-    const DriveMaker maker(options.law, person.avatar, person.map);
-    planes = planes | maker.planes();
-    drives_.back() = maker.make();
-  }
-  SharedContext context(options.choice.context, options.choice.device);
-  for (std::size_t i = 0; i < trace.people.size(); ++i) {
-    const TracedPerson& person = trace.people[i];
-    detectors_.push_back(
-        make_detector(options.choice.detector, context, options.choice, person.avatar, person.map, planes));
-    people_.push_back({i, person.avatar, *detectors_.back()});
-  }
-}
-
-std::vector<SeenPerson> Watchers::look(const TraceFrame& frame, const DetectionRun& run) {
-  std::vector<SeenPerson> seen;
-  for (std::size_t i = 0; i < people_.size(); ++i) {
-    const ActuatorFrame* felt =
-        drives_[i] == nullptr ? nullptr : &drives_[i]->next(frame.time_s(), run.row(i), &run.frame(i));
-    seen.push_back({run.frame(i), run.row(i), felt});
-  }
-  return seen;
-}
-
-void require_surfaces(const OpenTrace& trace, const std::string& name) {
-  for (std::size_t i = 0; i < trace.people.size(); ++i)
-    require_surface(
-        trace.people[i].avatar,
-        fmt::format("{}, {}", name, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
-}
-
 /// Reads the whole trace into `copy`.
 void add_all(OpenTrace& trace, Watchers& watchers, VizTrace& copy, const VizOptions& options) {
-  DetectionRun run = watchers.run(trace);
   const auto total = static_cast<double>(trace.reader.frame_count());
   double done = 0;
   Progress progress("Looking for contacts", options.common.verbosity());
   TraceFrame frame;
   while (trace.reader.next(frame)) {
-    run.step(frame);
-    copy.write(frame, watchers.look(frame, run));
+    watchers.step(frame);
+    copy.write(frame, watchers.seen());
     if (!progress.update(++done / total)) throw Error(options.trace, "the work was stopped; nothing was written", "");
   }
   copy.finish();
@@ -116,7 +62,8 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
   require_surfaces(trace, options.trace);
   require_frames(trace.reader, options.trace);
-  Watchers watchers(options, trace);
+  Watchers watchers(trace.people, trace, options.trace,
+                    {options.choice, options.law, kHashedPlanes | Plane::kPosition});
   warn_of_radii({watchers.detector()}, trace.reader, options.trace, verbosity);
   const mcap::FileSource source(options.trace);
 
@@ -153,6 +100,10 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
              options.common);
   invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
   if (!damages.empty()) invocation.exit_code = kDataLost;
+  for (const std::string& note : watchers.notes()) {
+    warn(fmt::format("{}: {}", options.trace, note), verbosity);
+    invocation.exit_code = kDataLost;
+  }
 }
 
 }  // namespace

@@ -13,12 +13,12 @@
 
 #include "analysis/base/provenance.hpp"
 #include "analysis/view/page.hpp"
-#include "cli/measure/view_sides.hpp"
+#include "cli/choices/law_choice.hpp"
+#include "cli/show/view_sides.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
-#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
@@ -41,11 +41,9 @@ std::string output_path(const ViewOptions& options) {
 /// What the page says below its title.
 std::vector<std::string> about(const ViewOptions& options, const std::vector<ViewSide>& sides) {
   std::vector<std::string> texts;
-  if (options.detectors.empty()) texts.push_back(fmt::format("detector {}", sides.front().detectors.front()->name()));
-  const bool has_motors = std::ranges::any_of(sides, [](const ViewSide& side) {
-    return std::ranges::any_of(side.drives, [](const auto& drive) { return drive.has_value(); });
-  });
-  if (has_motors) texts.push_back(fmt::format("law {}, hold {} ms", options.law.law, options.law.hold_ms));
+  if (options.detectors.empty()) texts.push_back("detector " + sides.front().watchers->detector());
+  if (std::ranges::any_of(sides, [](const ViewSide& side) { return side.watchers->any_feels(); }))
+    texts.push_back(fmt::format("law {}, hold {} ms", options.law.law, options.law.hold_ms));
   texts.push_back("vestige " + commit().substr(0, 10));
   return texts;
 }
@@ -87,14 +85,11 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   for (const SideChoice& choice : choices) add_map_files(choice.maps, inputs);
   check_outputs({output, options.common.json}, inputs, options.common);
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
-  for (std::size_t i = 0; i < trace.people.size(); ++i)
-    require_surface(
-        trace.people[i].avatar,
-        fmt::format("{}, {}", options.trace, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
+  require_surfaces(trace, options.trace);
   require_frames(trace.reader, options.trace);
-  const std::vector<ViewSide> sides = make_sides(choices, trace, options);
+  std::vector<ViewSide> sides = make_sides(choices, trace, options);
   std::vector<std::string> detectors;
-  for (const ViewSide& side : sides) detectors.emplace_back(side.detectors.front()->name());
+  for (const ViewSide& side : sides) detectors.push_back(side.watchers->detector());
   warn_of_radii(detectors, trace.reader, options.trace, verbosity);
 
   catch_interrupts();

@@ -1,17 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "analysis/view/page_packer.hpp"
 #include "cli/choices/detectors.hpp"
-#include "cli/choices/law_choice.hpp"
 #include "cli/choices/person_maps.hpp"
 #include "cli/choices/scene.hpp"
-#include "cli/measure/replay_check.hpp"
-#include "detector/actuators/law_maker.hpp"
+#include "cli/show/watchers.hpp"
 
 namespace vestige::cli {
 
@@ -41,8 +39,7 @@ std::vector<SideChoice> side_choices(const ViewOptions& options);
 struct ViewSide {
   std::string title;
   std::vector<TracedPerson> people;
-  std::vector<std::optional<DriveMaker>> drives;  ///< of each person; empty for a person without an actuator
-  PeopleDetectors detectors;
+  std::unique_ptr<Watchers> watchers;  ///< keeps references to `people`
 };
 
 /// Makes the sides of a trace. Throws `UsageError` or `Error` if a map, a law or a detector does not suit it.
@@ -59,7 +56,6 @@ struct Findings {
 };
 
 /// Reads the whole trace into `packer`, which is for `page_people`. Throws `Error` if Ctrl-C is pressed.
-Findings pack_frames(OpenTrace& trace, const std::vector<ViewSide>& sides, PagePacker& packer,
-                     const ViewOptions& options);
+Findings pack_frames(OpenTrace& trace, std::vector<ViewSide>& sides, PagePacker& packer, const ViewOptions& options);
 
 }  // namespace vestige::cli

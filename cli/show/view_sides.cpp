@@ -1,0 +1,95 @@
+#include "cli/show/view_sides.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "cli/options.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+void require_two(const std::vector<std::string>& values, const std::string& flag, const std::string& example) {
+  if (values.size() != 2)
+    throw UsageError(flag, fmt::format("names {}, but a page has two sides", counted(values.size(), "value")),
+                     "write " + example);
+  if (values[0] == values[1]) throw UsageError(flag, "both sides would be the same", "write " + example);
+}
+
+}  // namespace
+
+std::vector<SideChoice> side_choices(const ViewOptions& options) {
+  const std::vector<PersonValue> maps = parse_maps(options.map);
+  if (!options.detectors.empty()) {
+    const std::vector<std::string> names = parse_names(options.detectors, detector_names(), "--detectors");
+    require_two(names, "--detectors", "--detectors paper,cpu");
+    std::vector<SideChoice> choices;
+    for (const std::string& name : names) choices.push_back({name, name, maps});
+    return choices;
+  }
+  if (options.maps.empty()) return {{"", options.choice.detector, maps}};
+  require_two(options.maps, "--maps", "--maps paper6 torso40");
+  std::vector<SideChoice> choices;
+  for (const std::string& map : options.maps) choices.push_back({map, options.choice.detector, parse_maps({map})});
+  return choices;
+}
+
+std::vector<ViewSide> make_sides(const std::vector<SideChoice>& choices, OpenTrace& trace, const ViewOptions& options) {
+  const PlaneSet planes = kHashedPlanes | Plane::kBarycentric | Plane::kPosition | Plane::kSide;
+  std::vector<ViewSide> sides;
+  for (const SideChoice& choice : choices) {
+    ViewSide& side = sides.emplace_back(ViewSide{choice.title, trace.people, nullptr});
+    use_maps(choice.maps, side.people, options.trace, options.common.verbosity());
+    DetectorChoice detector = options.choice;
+    detector.detector = choice.detector;
+    side.watchers =
+        std::make_unique<Watchers>(side.people, trace, options.trace, WatchChoice{detector, options.law, planes});
+  }
+  return sides;
+}
+
+std::vector<PagePerson> page_people(const std::vector<ViewSide>& sides) {
+  std::vector<PagePerson> people;
+  for (std::size_t side = 0; side < sides.size(); ++side)
+    for (std::size_t body = 0; body < sides[side].people.size(); ++body) {
+      const TracedPerson& person = sides[side].people[body];
+      people.push_back({person.name, person.avatar, person.map, body, side});
+    }
+  return people;
+}
+
+std::vector<std::string> side_titles(const std::vector<ViewSide>& sides) {
+  std::vector<std::string> titles;
+  if (sides.size() > 1)
+    for (const ViewSide& side : sides) titles.push_back(side.title);
+  return titles;
+}
+
+Findings pack_frames(OpenTrace& trace, std::vector<ViewSide>& sides, PagePacker& packer, const ViewOptions& options) {
+  Findings found = {std::vector<std::uint64_t>(sides.size()), {}};
+  const auto total = static_cast<double>(trace.reader.frame_count());
+  double done = 0;
+  Progress progress("Looking for contacts", options.common.verbosity());
+  TraceFrame frame;
+  while (trace.reader.next(frame)) {
+    packer.add(frame);
+    std::size_t person = 0;
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+      sides[side].watchers->step(frame);
+      for (const SeenPerson& seen : sides[side].watchers->seen()) {
+        found.contacts[side] += packer.add_contacts(person, seen.frame, seen.row);
+        if (seen.felt != nullptr) packer.add_duties(person, *seen.felt);
+        ++person;
+      }
+    }
+    if (!progress.update(++done / total)) throw Error(options.trace, "writing the page was stopped", "");
+  }
+  found.notes = sides.front().watchers->notes();  // all sides get the same frames
+  return found;
+}
+
+}  // namespace vestige::cli
