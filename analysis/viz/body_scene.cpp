@@ -34,7 +34,7 @@ std::size_t main_node(const Avatar& avatar, std::uint32_t triangle) {
 }
 
 /// Returns the actuator at each vertex, as one of its triangles has it.
-std::vector<std::uint16_t> actuators_at_vertices(const VizPerson& person) {
+std::vector<std::uint16_t> actuators_at_vertices(const MappedPerson& person) {
   std::vector<std::uint16_t> actuators(person.avatar.position_bind.size());
   for (std::uint32_t triangle = 0; triangle < person.avatar.triangles.size(); ++triangle)
     for (int corner = 0; corner < 3; ++corner) {
@@ -57,12 +57,12 @@ void add_entry(Entries& entries, VizBuilder& builder, const char* key, const std
 
 }  // namespace
 
-BodyScene::BodyScene(std::span<const VizPerson> people, std::span<const std::uint32_t> collider_ids)
+BodyScene::BodyScene(std::span<const MappedPerson> people, std::span<const std::uint32_t> collider_ids)
     : people_(people.begin(), people.end()),
       collider_ids_(collider_ids.begin(), collider_ids.end()),
       builder_(std::make_unique<VizBuilder>()),
       bodies_(avatars_of(people)) {
-  for (const VizPerson& person : people_) {
+  for (const MappedPerson& person : people_) {
     Skin& skin = skins_.emplace_back();
     for (const glm::uvec3& triangle : person.avatar.triangles)
       skin.indices.insert(skin.indices.end(), {triangle.x, triangle.y, triangle.z});

@@ -19,7 +19,7 @@ struct VizBuilder;
 class BodyScene {
  public:
   /// Keeps references to avatars and maps. `collider_ids` belong to the columns of rows.
-  BodyScene(std::span<const VizPerson> people, std::span<const std::uint32_t> collider_ids);
+  BodyScene(std::span<const MappedPerson> people, std::span<const std::uint32_t> collider_ids);
   ~BodyScene();
   BodyScene(const BodyScene&) = delete;
   BodyScene& operator=(const BodyScene&) = delete;
@@ -39,7 +39,7 @@ class BodyScene {
     std::vector<std::uint16_t> actuator;  ///< of each vertex; 0: none
   };
 
-  std::vector<VizPerson> people_;
+  std::vector<MappedPerson> people_;
   std::vector<std::uint32_t> collider_ids_;
   std::vector<Skin> skins_;  ///< one for each person
   std::unique_ptr<VizBuilder> builder_;

@@ -21,7 +21,7 @@ constexpr const char* kDutyPanel = "Plot!vestige";
 constexpr const char* kContactPanel = "RawMessages!vestige";
 
 /// The axes of all frames are hidden: they would cover the body.
-ordered_json hidden_frames(std::span<const VizPerson> people) {
+ordered_json hidden_frames(std::span<const MappedPerson> people) {
   ordered_json frames;
   const auto hide = [&](const std::string& name) { frames["frame:" + name] = {{"visible", false}}; };
   hide(viz_format::kWorld);
@@ -51,7 +51,7 @@ ordered_json floor_grid() {
           {"order", 1}};
 }
 
-ordered_json scene_panel(std::span<const VizPerson> people) {
+ordered_json scene_panel(std::span<const MappedPerson> people) {
   ordered_json topics;
   for (const char* topic : {viz_format::kMeshTopic, viz_format::kContactsTopic, viz_format::kSceneTopic})
     topics[topic] = {{"visible", true}};
@@ -77,10 +77,10 @@ ordered_json scene_panel(std::span<const VizPerson> people) {
           {"imageMode", ordered_json::object()}};
 }
 
-ordered_json duty_panel(std::span<const VizPerson> people) {
+ordered_json duty_panel(std::span<const MappedPerson> people) {
   const std::vector<std::string> names = viz_actuator_names(people);
   ordered_json paths = ordered_json::array();
-  for (const VizPerson& person : people)
+  for (const MappedPerson& person : people)
     for (std::size_t actuator = 1; actuator <= person.map.actuator_count; ++actuator) {
       const plot::Colour colour = plot::region_colour(actuator, person.map.actuator_count);
       paths.push_back({{"value", fmt::format("{}.actuators[{}].duty", viz_format::kActuatorsTopic, paths.size())},
@@ -114,7 +114,7 @@ ordered_json contact_panel() {
 
 }  // namespace
 
-std::string viewer_layout(std::span<const VizPerson> people) {
+std::string viewer_layout(std::span<const MappedPerson> people) {
   const ordered_json beside = {
       {"direction", "column"}, {"first", kDutyPanel}, {"second", kContactPanel}, {"splitPercentage", 60}};
   const ordered_json layout = {

@@ -31,7 +31,7 @@ class VizTrace {
   /// What to add, and to which trace. References and spans are kept.
   struct Input {
     const mcap::ByteSource& source;
-    std::span<const VizPerson> people;
+    std::span<const MappedPerson> people;
     std::span<const std::uint32_t> collider_ids;  ///< all of the trace, ascending
     double mesh_rate_hz = 0;                      ///< how often the skin is added; 0: never
   };

@@ -142,12 +142,6 @@ std::string before_person(const OpenTrace& trace, std::size_t person) {
   return trace.people.size() == 1 ? "" : trace.people[person].name + ": ";
 }
 
-std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first) {
-  if (!first) return "";
-  return fmt::format("{} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
-                     frames, segments, *first);
-}
-
 int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity) {
   if (trace.complete()) return kDone;
   warn_all(damage_of(trace, path), verbosity);

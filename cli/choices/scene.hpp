@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -75,10 +73,6 @@ void require_surfaces(const OpenTrace& trace, const std::string& file);
 
 /// Returns what stands before what is said about a person: "NAME: ", or "" if the trace has one person.
 std::string before_person(const OpenTrace& trace, std::size_t person);
-
-/// Says which poses and segments were not finite, and so fired nothing. `first`: the first frame with one. Returns ""
-/// if all were finite.
-std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first);
 
 /// Prints what was wrong with a trace to standard error. Returns kDataLost if anything was, otherwise kDone.
 int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity);

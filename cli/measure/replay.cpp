@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analysis/base/provenance.hpp"
+#include "analysis/run/seen_run.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/law_choice.hpp"
 #include "cli/choices/person_maps.hpp"

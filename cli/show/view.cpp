@@ -41,8 +41,8 @@ std::string output_path(const ViewOptions& options) {
 /// What the page says below its title.
 std::vector<std::string> about(const ViewOptions& options, const std::vector<ViewSide>& sides) {
   std::vector<std::string> texts;
-  if (options.detectors.empty()) texts.push_back("detector " + sides.front().watchers->detector());
-  if (std::ranges::any_of(sides, [](const ViewSide& side) { return side.watchers->any_feels(); }))
+  if (options.detectors.empty()) texts.push_back("detector " + sides.front().run->detector());
+  if (std::ranges::any_of(sides, [](const ViewSide& side) { return side.run->any_feels(); }))
     texts.push_back(fmt::format("law {}, hold {} ms", options.law.law, options.law.hold_ms));
   texts.push_back("vestige " + commit().substr(0, 10));
   return texts;
@@ -89,7 +89,7 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   require_frames(trace.reader, options.trace);
   std::vector<ViewSide> sides = make_sides(choices, trace, options);
   std::vector<std::string> detectors;
-  for (const ViewSide& side : sides) detectors.push_back(side.watchers->detector());
+  for (const ViewSide& side : sides) detectors.push_back(side.run->detector());
   warn_of_radii(detectors, trace.reader, options.trace, verbosity);
 
   catch_interrupts();

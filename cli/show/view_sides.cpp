@@ -46,8 +46,7 @@ std::vector<ViewSide> make_sides(const std::vector<SideChoice>& choices, OpenTra
     use_maps(choice.maps, side.people, options.trace, options.common.verbosity());
     DetectorChoice detector = options.choice;
     detector.detector = choice.detector;
-    side.watchers =
-        std::make_unique<Watchers>(side.people, trace, options.trace, WatchChoice{detector, options.law, planes});
+    side.run = std::make_unique<SeenRun>(make_run(side.people, detector, options.law, planes, trace, options.trace));
   }
   return sides;
 }
@@ -79,8 +78,8 @@ Findings pack_frames(OpenTrace& trace, std::vector<ViewSide>& sides, PagePacker&
     packer.add(frame);
     std::size_t person = 0;
     for (std::size_t side = 0; side < sides.size(); ++side) {
-      sides[side].watchers->step(frame);
-      for (const SeenPerson& seen : sides[side].watchers->seen()) {
+      sides[side].run->step(frame);
+      for (const SeenPerson& seen : sides[side].run->seen()) {
         found.contacts[side] += packer.add_contacts(person, seen.frame, seen.row);
         if (seen.felt != nullptr) packer.add_duties(person, *seen.felt);
         ++person;
@@ -88,7 +87,7 @@ Findings pack_frames(OpenTrace& trace, std::vector<ViewSide>& sides, PagePacker&
     }
     if (!progress.update(++done / total)) throw Error(options.trace, "writing the page was stopped", "");
   }
-  found.notes = sides.front().watchers->notes();  // all sides get the same frames
+  found.notes = notes_of(*sides.front().run, trace);  // all sides get the same frames
   return found;
 }
 

@@ -9,7 +9,7 @@
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/person_maps.hpp"
 #include "cli/choices/scene.hpp"
-#include "cli/show/watchers.hpp"
+#include "cli/show/trace_run.hpp"
 
 namespace vestige::cli {
 
@@ -39,7 +39,7 @@ std::vector<SideChoice> side_choices(const ViewOptions& options);
 struct ViewSide {
   std::string title;
   std::vector<TracedPerson> people;
-  std::unique_ptr<Watchers> watchers;  ///< keeps references to `people`
+  std::unique_ptr<SeenRun> run;  ///< keeps references to `people`
 };
 
 /// Makes the sides of a trace. Throws `UsageError` or `Error` if a map, a law or a detector does not suit it.

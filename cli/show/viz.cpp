@@ -14,7 +14,7 @@
 #include "cli/files/export_formats.hpp"
 #include "cli/files/rewriting.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/show/watchers.hpp"
+#include "cli/show/trace_run.hpp"
 #include "cli/verbs.hpp"
 #include "detector/actuators/law_maker.hpp"
 #include "traces/base/error.hpp"
@@ -37,14 +37,14 @@ struct VizOptions {
 };
 
 /// Reads the whole trace into `copy`.
-void add_all(OpenTrace& trace, Watchers& watchers, VizTrace& copy, const VizOptions& options) {
+void add_all(OpenTrace& trace, SeenRun& run, VizTrace& copy, const VizOptions& options) {
   const auto total = static_cast<double>(trace.reader.frame_count());
   double done = 0;
   Progress progress("Looking for contacts", options.common.verbosity());
   TraceFrame frame;
   while (trace.reader.next(frame)) {
-    watchers.step(frame);
-    copy.write(frame, watchers.seen());
+    run.step(frame);
+    copy.write(frame, run.seen());
     if (!progress.update(++done / total)) throw Error(options.trace, "the work was stopped; nothing was written", "");
   }
   copy.finish();
@@ -62,20 +62,19 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
   require_surfaces(trace, options.trace);
   require_frames(trace.reader, options.trace);
-  Watchers watchers(trace.people, trace, options.trace,
-                    {options.choice, options.law, kHashedPlanes | Plane::kPosition});
-  warn_of_radii({watchers.detector()}, trace.reader, options.trace, verbosity);
+  const std::vector<MappedPerson> people = mapped(trace.people);
+  SeenRun run =
+      make_run(trace.people, options.choice, options.law, kHashedPlanes | Plane::kPosition, trace, options.trace);
+  warn_of_radii({run.detector()}, trace.reader, options.trace, verbosity);
   const mcap::FileSource source(options.trace);
 
   catch_interrupts();
   std::optional<OutputFile> layout;
   if (!options.layout.empty()) layout.emplace(options.layout, options.common.overwrite());
   OutputFile written(options.output, options.common.overwrite());
-  std::vector<VizPerson> people;
-  for (const TracedPerson& person : trace.people) people.push_back({person.avatar, person.map});
   VizTrace copy({source, people, trace.reader.collider_ids(), options.mesh_rate_hz},
                 [&](mcap::Bytes bytes) { written.write(bytes); });
-  add_all(trace, watchers, copy, options);
+  add_all(trace, run, copy, options);
   if (layout) layout->write(viewer_layout(people));
   written.commit();
   if (layout) layout->commit();
@@ -89,7 +88,7 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
   write_json(options.common.json,
              with_provenance(invocation.argv, {{"trace", options.trace},
                                                {"output", options.output},
-                                               {"detector", watchers.detector()},
+                                               {"detector", run.detector()},
                                                {"law", options.law.law},
                                                {"hold_ms", options.law.hold_ms},
                                                {"frames", trace.reader.frame_count()},
@@ -100,7 +99,7 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
              options.common);
   invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
   if (!damages.empty()) invocation.exit_code = kDataLost;
-  for (const std::string& note : watchers.notes()) {
+  for (const std::string& note : notes_of(run, trace)) {
     warn(fmt::format("{}: {}", options.trace, note), verbosity);
     invocation.exit_code = kDataLost;
   }

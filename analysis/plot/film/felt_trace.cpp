@@ -1,5 +1,7 @@
 #include "analysis/plot/film/felt_trace.hpp"
 
+#include <memory>
+#include <span>
 #include <utility>
 
 #include "detector/depth/depth_detector.hpp"
@@ -18,45 +20,43 @@ std::unique_ptr<Detector> make_detector(const Subject& person, PlaneSet planes, 
   return planes.has(Plane::kDepth) ? with_depth(std::move(detector), person.avatar) : std::move(detector);
 }
 
+SeenRun make_run(const std::vector<Subject>& people, std::span<const std::uint32_t> collider_ids, const LawFlags& law,
+                 Method method) {
+  std::vector<MappedPerson> mapped;
+  for (const Subject& person : people) mapped.push_back({person.avatar, person.map});
+  return {{mapped, collider_ids, law, kHashedPlanes | Plane::kBarycentric}, [&](PlaneSet planes) {
+            PeopleDetectors detectors;
+            for (const Subject& person : people) detectors.push_back(make_detector(person, planes, method));
+            return detectors;
+          }};
+}
+
 }  // namespace
 
 FeltTrace::FeltTrace(TraceReader& trace, const std::vector<Subject>& people, const LawFlags& law, Method method)
-    : trace_(trace), people_(people), ids_(trace.collider_ids()), makers_(people.size()), drives_(people.size()) {
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    const Subject& person = people[i];
-    PlaneSet planes = kHashedPlanes | Plane::kBarycentric;
-    if (person.map.actuator_count > 0) planes = planes | makers_[i].emplace(law, person.avatar, person.map).planes();
-    detectors_.push_back(make_detector(person, planes, method));
-  }
+    : trace_(trace), ids_(trace.collider_ids()), run_(make_run(people, ids_, law, method)) {
   rewind();
 }
 
 void FeltTrace::rewind() {
   trace_.rewind();
-  std::vector<DetectedPerson> detected;
-  for (std::size_t i = 0; i < people_.size(); ++i) {
-    detected.push_back({i, people_[i].avatar, *detectors_[i]});
-    if (makers_[i]) drives_[i] = makers_[i]->make();
-  }
-  run_.emplace(detected, ids_);
+  run_.rewind();
 }
 
 bool FeltTrace::next() {
   if (!trace_.next(frame_)) return false;
-  run_->step(frame_);
+  run_.step(frame_);
   contacts_.clear();
   duty_.clear();
-  for (std::size_t i = 0; i < people_.size(); ++i) {
-    note_contacts(i);
-    if (!drives_[i]) continue;
-    const ActuatorFrame& felt = drives_[i]->next(frame_.time_s(), run_->row(i), &run_->frame(i));
-    duty_.insert(duty_.end(), felt.duty.begin(), felt.duty.end());
+  for (std::size_t i = 0; i < run_.seen().size(); ++i) {
+    const SeenPerson& seen = run_.seen()[i];
+    note_contacts(i, seen.row);
+    if (seen.felt != nullptr) duty_.insert(duty_.end(), seen.felt->duty.begin(), seen.felt->duty.end());
   }
   return true;
 }
 
-void FeltTrace::note_contacts(std::size_t person) {
-  const ContactRow& row = run_->row(person);
+void FeltTrace::note_contacts(std::size_t person, const ContactRow& row) {
   for (std::size_t column = 0; column < row.size(); ++column) {
     const Contact& found = row[column];
     if (!found.hit()) continue;

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <vector>
 
 #include "analysis/plot/studio/subject.hpp"
-#include "analysis/run/detection_run.hpp"
+#include "analysis/run/seen_run.hpp"
 #include "detector/actuators/law_maker.hpp"
 #include "detector/method.hpp"
 #include "detector/output/recorded_contacts.hpp"
@@ -32,15 +30,11 @@ class FeltTrace {
   const std::vector<std::uint8_t>& duty() const { return duty_; }
 
  private:
-  void note_contacts(std::size_t person);
+  void note_contacts(std::size_t person, const ContactRow& row);
 
   TraceReader& trace_;
-  const std::vector<Subject>& people_;
   std::vector<std::uint32_t> ids_;
-  std::vector<std::optional<DriveMaker>> makers_;  ///< of each person; empty for a person without an actuator
-  std::vector<std::unique_ptr<Detector>> detectors_;
-  std::optional<DetectionRun> run_;
-  std::vector<std::unique_ptr<ActuatorDrive>> drives_;
+  SeenRun run_;
   TraceFrame frame_;
   std::vector<RecordedContact> contacts_;
   std::vector<std::uint8_t> duty_;
