@@ -211,7 +211,8 @@ void BatchFolder::remove_page() const {
   if (!std::filesystem::remove(folder_ / kPage, ignored)) return;
   std::vector<std::filesystem::path> figures;
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / kFigures, ignored))
-    if (const auto extension = entry.path().extension(); extension == ".svg" || extension == ".png")
+    if (const auto extension = entry.path().extension();
+        extension == ".svg" || extension == ".png" || extension == ".html")
       figures.push_back(entry.path());
   for (const auto& path : figures) std::filesystem::remove(path, ignored);
   std::filesystem::remove(folder_ / kFigures, ignored);  // fails if the folder has other files

@@ -7,12 +7,6 @@
 
 namespace vestige::cli {
 
-namespace {
-
-constexpr PersonFlag kMapFlag = {"--map", "map", "FILE.png"};
-
-}  // namespace
-
 CLI::Option* add_maps_option(CLI::App& verb, std::vector<std::string>& maps, const std::string& group) {
   return verb
       .add_option("--map", maps,
@@ -25,11 +19,11 @@ CLI::Option* add_maps_option(CLI::App& verb, std::vector<std::string>& maps, con
       ->take_all();
 }
 
-std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts) {
-  std::vector<PersonValue> maps = parse_person_values(kMapFlag, texts);
+std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts, const PersonFlag& flag) {
+  std::vector<PersonValue> maps = parse_person_values(flag, texts);
   for (const PersonValue& map : maps)
     if (map.value == "-")
-      throw UsageError(kMapFlag.name, "a map cannot come from standard input", "name a file or a layout");
+      throw UsageError(flag.name, "a map cannot come from standard input", "name a file or a layout");
   return maps;
 }
 
@@ -54,9 +48,9 @@ ActuatorMap read_map(const std::string& map, const TracedPerson& person, const s
 }
 
 void use_maps(const std::vector<PersonValue>& maps, std::span<TracedPerson> people, const std::string& trace,
-              Verbosity verbosity) {
+              Verbosity verbosity, const PersonFlag& flag) {
   for (const PersonValue& map : maps) {
-    TracedPerson& person = people[person_of(map, kMapFlag, people.size(), trace)];
+    TracedPerson& person = people[person_of(map, flag, people.size(), trace)];
     person.map = read_map(map.value, person, trace, verbosity);
   }
 }

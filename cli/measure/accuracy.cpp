@@ -6,20 +6,26 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <numeric>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "analysis/accuracy/accuracy_report.hpp"
 #include "analysis/accuracy/inside_time.hpp"
+#include "analysis/accuracy/missed_page.hpp"
 #include "analysis/base/provenance.hpp"
+#include "analysis/view/trace_page.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/scene_choice.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/scene/radius.hpp"
 #include "traces/scene/trace.hpp"
 
@@ -184,7 +190,37 @@ class Measurement {
     return sum;
   }
 
+  /// Writes the page on which the detector that misses most stands beside exact detection. Returns what it shows; ""
+  /// if nothing is missed, and no page is written.
+  std::string write_missed(std::span<const AccuracyScene> scenes, std::span<const SceneChoice> choices,
+                           const std::string& path) const {
+    const std::optional<MostMissed> most = most_missed(scenes);
+    if (!most) return "";
+    const AccuracyContestant& contestant = contestants_[most->point->contestant];
+    std::vector<MissedSide> sides;
+    sides.push_back(missed_side(contestant.detector, contestant.method));
+    sides.push_back(missed_side("cpu", Method::kCcd));
+    if (sides[0].title == sides[1].title) return "";
+    const auto choice = std::ranges::find(choices, most->scene->colliders, &SceneChoice::colliders);
+    const std::string what =
+        fmt::format("What {} misses at {:g} Hz in {}", sides[0].title, most->point->rate_hz, most->scene->colliders);
+    const MovingScene moving = moving_scene(*choice, most->scene->seeds.front());
+    const std::string page = missed_page(moving, scene_.map, most->point->rate_hz, std::move(sides), what);
+    OutputFile file(path, options_.common.overwrite());
+    file.write(page);
+    file.commit();
+    return what;
+  }
+
  private:
+  MissedSide missed_side(const std::string& detector, Method method) const {
+    DetectorChoice choice = options_.choice;
+    choice.method = name_of(method);
+    MissedSide side = {fmt::format("{}, {}", detector, choice.method), {}};
+    side.detectors.push_back(make_detector(detector, choice.context, choice, scene_.avatar, scene_.map, kPagePlanes));
+    return side;
+  }
+
   /// Takes the contestants away that need no further seed.
   void leave_out_precise(const AccuracyScene& scene, std::vector<std::size_t>& which) const {
     // A little below what is asked for, since this is not the bootstrap of the report.
@@ -196,12 +232,17 @@ class Measurement {
     });
   }
 
-  AccuracyScene measure(const SceneChoice& choice, std::uint64_t seed, const std::vector<std::size_t>& which) const {
+  MovingScene moving_scene(const SceneChoice& choice, std::uint64_t seed) const {
     MovingScene moving{scene_.avatar, animation_, nullptr, {}, options_.duration_s, {}};
     moving.make_colliders = [this, &choice, seed] { return make_colliders(choice, scene_.avatar, animation_, seed); };
     const std::unique_ptr<ColliderSource> colliders = moving.make_colliders();
     check_colliders(choice, *colliders, options_.duration_s, options_.common.verbosity());
     take_colliders(options_, choice, *colliders, moving);
+    return moving;
+  }
+
+  AccuracyScene measure(const SceneChoice& choice, std::uint64_t seed, const std::vector<std::size_t>& which) const {
+    const MovingScene moving = moving_scene(choice, seed);
     if (seed == options_.common.seed) warn_of_ignored_radii(moving, choice.colliders);
     AccuracyScene result;
     result.colliders = choice.colliders;
@@ -277,6 +318,21 @@ nlohmann::ordered_json results_json(const AccuracyOptions& options, const SceneC
           {"complete", !interrupted()}};
 }
 
+/// Writes the page of what is missed, or removes that of an earlier run.
+void show_missed(const Measurement& measurement, std::span<const AccuracyScene> scenes,
+                 std::span<const SceneChoice> choices, const AccuracyOptions& options) {
+  const std::string path = options.output + "/missed.html";
+  const bool wanted = !options.no_figure && !interrupted();
+  const std::string what = wanted ? measurement.write_missed(scenes, choices, path) : "";
+  if (what.empty()) {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    return;
+  }
+  print_summary(fmt::format("{}: {}; D goes from one to the next\n", path, what), {options.common.json},
+                options.common);
+}
+
 void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   parse_names(options.detectors, detector_names(), "--detector");
   parse_names(options.methods, kMethodNames, "--method");
@@ -293,7 +349,8 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   const std::string errors_path = options.output + "/accuracy.json";
   const std::string run_path = options.output + "/run.json";
   make_output_folder(options.output);
-  const std::vector<std::string> outputs = {errors_path, run_path, options.common.json};
+  const std::string page_path = options.no_figure ? "" : options.output + "/missed.html";
+  const std::vector<std::string> outputs = {errors_path, run_path, page_path, options.common.json};
   check_outputs(outputs, {options.scene.avatar, options.scene.map}, options.common);
 
   catch_interrupts();
@@ -329,6 +386,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
          options.common.verbosity());
   print_summary(accuracy_table(scenes, contestants, options.tolerance_ms / 1e3), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", errors_path, run_path), {options.common.json}, options.common);
+  show_missed(measurement, scenes, choices, options);
   draw_or_remove_figure("accuracy", "accuracy", options.output, !options.no_figure && !interrupted(), options.common);
   if (interrupted()) invocation.exit_code = kDataLost;
 }
@@ -420,7 +478,7 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->check(help::kPositive);
   add_truth_options(*verb, *options);
-  verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
+  verb->add_flag("--no-figure", options->no_figure, "Draw neither the figure nor the page of missed contacts");
   verb->add_option("-o,--output", options->output, "Folder for accuracy.json, run.json (times), and the figure")
       ->required()
       ->type_name("DIR");

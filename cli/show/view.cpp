@@ -25,8 +25,6 @@ namespace vestige::cli {
 namespace {
 
 constexpr double kVisible_m = 0.01;
-/// Larger pages open slowly.
-constexpr std::size_t kLargePage_bytes = 25'000'000;
 
 /// Beside the trace: man.mcap becomes man.html.
 std::string output_path(const ViewOptions& options) {
@@ -87,14 +85,14 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
   require_surfaces(trace, options.trace);
   require_frames(trace.reader, options.trace);
-  std::vector<ViewSide> sides = make_sides(choices, trace, options);
+  const std::vector<ViewSide> sides = make_sides(choices, trace, options);
   std::vector<std::string> detectors;
   for (const ViewSide& side : sides) detectors.push_back(side.run->detector());
   warn_of_radii(detectors, trace.reader, options.trace, verbosity);
 
   catch_interrupts();
   PagePacker packer(page_people(sides), side_titles(sides), trace.reader.collider_ids());
-  const Findings found = pack_frames(trace, sides, packer, options);
+  const std::vector<std::uint64_t> found = pack_frames(trace, sides, packer, options);
   PageContent content = packer.finish();
   const double skin_error_mm = content.head["error_mm"]["skin"].get<double>();
   if (skin_error_mm > 1e3 * kVisible_m)
@@ -103,7 +101,8 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
          verbosity);
   content.head["about"] = about(options, sides);
   std::vector<std::string> warnings = damage_of(trace.reader, options.trace);
-  warnings.insert(warnings.end(), found.notes.begin(), found.notes.end());
+  const std::vector<std::string> notes = notes_of(*sides.front().run, trace);  // all sides get the same frames
+  warnings.insert(warnings.end(), notes.begin(), notes.end());
   content.head["warnings"] = std::move(warnings);
   const std::string title = options.trace == "-" ? "trace" : std::filesystem::path(options.trace).filename().string();
   const std::string page = make_page(title, content);
@@ -115,8 +114,8 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   std::vector<std::string> counts;
   nlohmann::ordered_json seen = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    counts.push_back(counted(found.contacts[i], "contact") + (sides.size() > 1 ? " (" + sides[i].title + ")" : ""));
-    seen.push_back({{"title", sides[i].title}, {"detector", detectors[i]}, {"contacts", found.contacts[i]}});
+    counts.push_back(counted(found[i], "contact") + (sides.size() > 1 ? " (" + sides[i].title + ")" : ""));
+    seen.push_back({{"title", sides[i].title}, {"detector", detectors[i]}, {"contacts", found[i]}});
   }
   print_summary(fmt::format("{}: {} and {}, {:.1f} MB\n", output, counted(trace.reader.frame_count(), "frame"),
                             fmt::join(counts, ", "), static_cast<double>(page.size()) / 1e6),
@@ -131,7 +130,7 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
                                                {"complete", trace.reader.complete()}}),
              options.common);
   invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
-  for (const std::string& note : found.notes) {
+  for (const std::string& note : notes) {
     warn(fmt::format("{}: {}", options.trace, note), verbosity);
     invocation.exit_code = kDataLost;
   }
@@ -156,7 +155,7 @@ void add_view(CLI::App& program, Invocation& invocation) {
   CLI::Option* const map = add_maps_option(*verb, options->map, "Intensity");
   CLI::Option* const maps =
       verb->add_option("--maps", options->maps, "Show the body with two maps, side by side: two of these")
-          ->type_name("FILE.png|LAYOUT|none")
+          ->type_name("[K=]FILE.png|LAYOUT|none")
           ->expected(2)
           ->group("Side by side")
           ->excludes(map);

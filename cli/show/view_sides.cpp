@@ -2,16 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <memory>
 #include <utility>
 
-#include "cli/options.hpp"
+#include "analysis/view/trace_page.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 
 namespace {
+
+constexpr PersonFlag kMapsFlag = {"--maps", "map", "FILE.png"};
 
 void require_two(const std::vector<std::string>& values, const std::string& flag, const std::string& example) {
   if (values.size() != 2)
@@ -34,19 +35,21 @@ std::vector<SideChoice> side_choices(const ViewOptions& options) {
   if (options.maps.empty()) return {{"", options.choice.detector, maps}};
   require_two(options.maps, "--maps", "--maps paper6 torso40");
   std::vector<SideChoice> choices;
-  for (const std::string& map : options.maps) choices.push_back({map, options.choice.detector, parse_maps({map})});
+  for (const std::string& map : options.maps)
+    choices.push_back({map, options.choice.detector, parse_maps({map}, kMapsFlag)});
   return choices;
 }
 
 std::vector<ViewSide> make_sides(const std::vector<SideChoice>& choices, OpenTrace& trace, const ViewOptions& options) {
-  const PlaneSet planes = kHashedPlanes | Plane::kBarycentric | Plane::kPosition | Plane::kSide;
   std::vector<ViewSide> sides;
   for (const SideChoice& choice : choices) {
     ViewSide& side = sides.emplace_back(ViewSide{choice.title, trace.people, nullptr});
-    use_maps(choice.maps, side.people, options.trace, options.common.verbosity());
+    use_maps(choice.maps, side.people, options.trace, options.common.verbosity(),
+             options.maps.empty() ? kMapFlag : kMapsFlag);
     DetectorChoice detector = options.choice;
     detector.detector = choice.detector;
-    side.run = std::make_unique<SeenRun>(make_run(side.people, detector, options.law, planes, trace, options.trace));
+    side.run =
+        std::make_unique<SeenRun>(make_run(side.people, detector, options.law, kPagePlanes, trace, options.trace));
   }
   return sides;
 }
@@ -68,27 +71,14 @@ std::vector<std::string> side_titles(const std::vector<ViewSide>& sides) {
   return titles;
 }
 
-Findings pack_frames(OpenTrace& trace, std::vector<ViewSide>& sides, PagePacker& packer, const ViewOptions& options) {
-  Findings found = {std::vector<std::uint64_t>(sides.size()), {}};
-  const auto total = static_cast<double>(trace.reader.frame_count());
-  double done = 0;
+std::vector<std::uint64_t> pack_frames(OpenTrace& trace, const std::vector<ViewSide>& sides, PagePacker& packer,
+                                       const ViewOptions& options) {
+  std::vector<SeenRun*> runs;
+  for (const ViewSide& side : sides) runs.push_back(side.run.get());
   Progress progress("Looking for contacts", options.common.verbosity());
-  TraceFrame frame;
-  while (trace.reader.next(frame)) {
-    packer.add(frame);
-    std::size_t person = 0;
-    for (std::size_t side = 0; side < sides.size(); ++side) {
-      sides[side].run->step(frame);
-      for (const SeenPerson& seen : sides[side].run->seen()) {
-        found.contacts[side] += packer.add_contacts(person, seen.frame, seen.row);
-        if (seen.felt != nullptr) packer.add_duties(person, *seen.felt);
-        ++person;
-      }
-    }
-    if (!progress.update(++done / total)) throw Error(options.trace, "writing the page was stopped", "");
-  }
-  found.notes = notes_of(*sides.front().run, trace);  // all sides get the same frames
-  return found;
+  auto contacts = pack_trace(trace.reader, runs, packer, [&](double share) { return progress.update(share); });
+  if (!contacts) throw Error(options.trace, "writing the page was stopped", "");
+  return std::move(*contacts);
 }
 
 }  // namespace vestige::cli

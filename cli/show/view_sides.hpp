@@ -9,6 +9,7 @@
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/person_maps.hpp"
 #include "cli/choices/scene.hpp"
+#include "cli/options.hpp"
 #include "cli/show/trace_run.hpp"
 
 namespace vestige::cli {
@@ -49,13 +50,9 @@ std::vector<ViewSide> make_sides(const std::vector<SideChoice>& choices, OpenTra
 std::vector<PagePerson> page_people(const std::vector<ViewSide>& sides);
 std::vector<std::string> side_titles(const std::vector<ViewSide>& sides);
 
-/// What was found on the way through a trace.
-struct Findings {
-  std::vector<std::uint64_t> contacts;  ///< of each side
-  std::vector<std::string> notes;       ///< sentences about what is not finite
-};
-
-/// Reads the whole trace into `packer`, which is for `page_people`. Throws `Error` if Ctrl-C is pressed.
-Findings pack_frames(OpenTrace& trace, std::vector<ViewSide>& sides, PagePacker& packer, const ViewOptions& options);
+/// Reads the whole trace into `packer`, which is for `page_people`. Returns the number of contacts of each side. Throws
+/// `Error` if Ctrl-C is pressed.
+std::vector<std::uint64_t> pack_frames(OpenTrace& trace, const std::vector<ViewSide>& sides, PagePacker& packer,
+                                       const ViewOptions& options);
 
 }  // namespace vestige::cli

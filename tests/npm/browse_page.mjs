@@ -36,6 +36,7 @@ function look() {
     help: document.getElementById("help").open, images: document.querySelectorAll("img").length,
     width: document.documentElement.scrollWidth, picture: drawn(0, 1), middle: drawn(0.4, 0.2), left: drawn(0, 0.5), right: drawn(0.5, 0.5),
     sides: [...document.querySelectorAll("#sides span")].map((side) => side.textContent),
+    totals: rows("totals"),
     alone: [...document.querySelectorAll(".alone td:last-child")].map((cell) => cell.textContent),
   };
 }

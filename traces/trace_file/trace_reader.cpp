@@ -157,8 +157,9 @@ void TraceReader::Implementation::require_people(People allowed) {
   if (allowed == People::kSeveral) return;
   newest_ = trace_format::kSpheresVersion;
   constexpr std::string_view kRemedy =
-      "`vestige replay`, `stream`, `batch`, `sweep`, `plot scene`, `export`, `inspect`, `doctor`, `cat`, `trim`, "
-      "`merge`, `recompress` and `recover` read it";
+      "`vestige replay`, `view`, `viz`, `stream`, `batch`, `sweep`, `plot scene`, `export`, `inspect`, `doctor`, "
+      "`cat`, "
+      "`trim`, `merge`, `recompress` and `recover` read it";
   if (index_.people > 1)
     throw Error(source_.name(), fmt::format("holds {} people, and this verb reads traces of one person", index_.people),
                 kRemedy);

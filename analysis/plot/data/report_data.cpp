@@ -194,6 +194,8 @@ void read_law_options(const JsonField& options, ReportData& data) {
   for (const LawParameter& known : law_parameters())
     if (options.has(known.field))
       data.law_options.*known.option = options.at(known.field).within(kLeast, kMost) / known.per_unit;
+  for (const Method method : {Method::kStatic, Method::kCarried, Method::kCcd})
+    if (options.has("method") && options.at("method").text() == vestige::name_of(method)) data.method = method;
   if (!options.has("actuator")) return;
   const JsonField actuator = options.at("actuator");
   data.actuator = actuator.at("given").text();
@@ -251,6 +253,8 @@ void read_run(const std::filesystem::path& file, ReportData& data) {
     trace.frames = field.at("frames").within(0, kMost);
     trace.colliders = field.at("colliders").within(0, kMost);
     trace.contacts = field.at("contacts").within(0, kMost);
+    if (field.has("sha256")) trace.sha256 = field.at("sha256").text();
+    if (field.has("avatar")) trace.person = static_cast<std::size_t>(field.at("avatar").within(1, kMost)) - 1;
     if (field.has("damage"))
       for (std::size_t k = 0; k < length(field.at("damage")); ++k)
         trace.damage.push_back(field.at("damage").at(k).text());

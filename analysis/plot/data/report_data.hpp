@@ -12,6 +12,7 @@
 
 #include "detector/actuators/actuator_model.hpp"
 #include "detector/actuators/intensity.hpp"
+#include "detector/method.hpp"
 
 namespace vestige::plot {
 
@@ -82,6 +83,8 @@ struct ReportTrace {
   double colliders = 0;
   double contacts = 0;
   std::vector<std::string> damage;
+  std::string sha256;      ///< of its file; empty: unknown
+  std::size_t person = 0;  ///< whom of the file's people, counted from 0
 };
 
 /// What 'vestige batch -o DIR' wrote, except contacts, maps and avatar.
@@ -101,6 +104,7 @@ struct ReportData {
   std::map<std::string, std::string> map_sha256;                 ///< of the judged maps: PNG, then sidecar
   std::vector<std::string> laws;                                 ///< in the order of the batch
   LawOptions law_options;                                        ///< options of all laws
+  Method method = Method::kStatic;                               ///< by which contacts were found
   std::string actuator;                                          ///< file of the motors; empty: ideal motors
   std::string actuator_sha256;                                   ///< of actuator.json; empty: unknown
   std::shared_ptr<const ActuatorModel> actuators;                ///< the motors

@@ -1,40 +1,13 @@
 #include "analysis/plot/film/felt_trace.hpp"
 
-#include <memory>
-#include <span>
-#include <utility>
-
-#include "detector/depth/depth_detector.hpp"
-#include "detector/detectors/make_detectors.hpp"
+#include "analysis/plot/studio/subject_run.hpp"
 
 namespace vestige::plot {
 
-namespace {
-
-std::unique_ptr<Detector> make_detector(const Subject& person, PlaneSet planes, Method method) {
-  DetectorOptions options;
-  options.planes = planes;
-  options.method = method;
-  options.skip = Skip::kOn;
-  std::unique_ptr<Detector> detector = make_cpu_detector(person.avatar, person.map, options);
-  return planes.has(Plane::kDepth) ? with_depth(std::move(detector), person.avatar) : std::move(detector);
-}
-
-SeenRun make_run(const std::vector<Subject>& people, std::span<const std::uint32_t> collider_ids, const LawFlags& law,
-                 Method method) {
-  std::vector<MappedPerson> mapped;
-  for (const Subject& person : people) mapped.push_back({person.avatar, person.map});
-  return {{mapped, collider_ids, law, kHashedPlanes | Plane::kBarycentric}, [&](PlaneSet planes) {
-            PeopleDetectors detectors;
-            for (const Subject& person : people) detectors.push_back(make_detector(person, planes, method));
-            return detectors;
-          }};
-}
-
-}  // namespace
-
 FeltTrace::FeltTrace(TraceReader& trace, const std::vector<Subject>& people, const LawFlags& law, Method method)
-    : trace_(trace), ids_(trace.collider_ids()), run_(make_run(people, ids_, law, method)) {
+    : trace_(trace),
+      ids_(trace.collider_ids()),
+      run_(make_run(people, ids_, law, method, kHashedPlanes | Plane::kBarycentric)) {
   rewind();
 }
 

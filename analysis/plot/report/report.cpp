@@ -16,11 +16,13 @@
 #include "analysis/plot/figures/timeline_figure.hpp"
 #include "analysis/plot/report/error_figure.hpp"
 #include "analysis/plot/report/map_pictures.hpp"
+#include "analysis/plot/report/map_view.hpp"
 #include "analysis/plot/report/ranking_figure.hpp"
 #include "analysis/plot/report/report_page.hpp"
 #include "analysis/plot/studio/subject.hpp"
 #include "analysis/scoring/contact_recording_file.hpp"
 #include "analysis/scoring/scores.hpp"
+#include "analysis/view/page.hpp"
 #include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuators/intensity.hpp"
 #include "traces/base/error.hpp"
@@ -34,6 +36,8 @@ namespace vestige::plot {
 namespace {
 
 constexpr std::size_t kRankedShown = 40;
+/// The best maps that can be watched. Each page takes a megabyte or more.
+constexpr std::size_t kMapsWatched = 3;
 
 /// Thrown where the user stopped; not an error.
 struct Stopped {};
@@ -191,9 +195,11 @@ class Report {
       page.ranking.push_back(draw("ranking", *ranking_figure(data, kRankedShown), caption));
     }
     const MapPictures pictures(avatar, contacts.all);
-    for (std::size_t i = 0; i < pictured; ++i)
+    for (std::size_t i = 0; i < pictured; ++i) {
       page.maps.push_back(
           section(data, maps[i], avatar, contacts, pictures, read_batch_map(batch_, data, maps[i], avatar)));
+      if (i < kMapsWatched) page.maps.back().view = watch(data, data.best_of(maps[i]));
+    }
 
     const std::string html = report_html(page);
     folder_->commit([](const std::filesystem::path&) { return false; });
@@ -225,6 +231,30 @@ class Report {
     OutputFile file(folder_->path() / name, Overwrite::kAllow);
     file.write(bytes);
     file.commit();
+  }
+
+  /// Draws the page on which a map is watched. Returns nothing if there is no trace for it.
+  std::optional<MapView> watch(const ReportData& data, const Candidate& candidate) {
+    const std::optional<TellingTrace> telling = telling_trace(batch_, data, candidate);
+    if (!telling) return {};
+    const double done = static_cast<double>(outcome_.figures) / static_cast<double>(figures_expected_);
+    const std::string& trace = telling->trace->name;
+    const std::string name = fmt::format("{}-{}.html", candidate.map, trace);
+    try {
+      const std::optional<std::string> page =
+          map_view(batch_, data, candidate, *telling, [&](double) { return progress_(done); });
+      if (!page) throw Stopped();
+      if (page->size() > kLargePage_bytes) {
+        outcome_.warnings.push_back(fmt::format("{}: a page on which it moves would have {:.0f} MB, and is left out",
+                                                trace, static_cast<double>(page->size()) / 1e6));
+        return {};
+      }
+      write_file(name, *page);
+    } catch (const Error& error) {
+      outcome_.warnings.push_back(fmt::format("{}: cannot be watched: {}", trace, error.what()));
+      return {};
+    }
+    return MapView{"figures/" + name, trace, telling->value};
   }
 
   MapSection section(const ReportData& data, const std::string& name, const Avatar& avatar, const Contacts& contacts,

@@ -279,6 +279,7 @@ class Page {
         html_text(estimate_text(best.headline, headline())), percent(map.contacts - map.unmapped, map.contacts),
         counted_contacts(map.contacts));
     for (const std::string& warning : map.warnings) add(out_, "<p class=\"caution\">{}</p>\n", html_text(warning));
+    if (map.view) watch(*map.view, best);
     out_ += "<div class=\"figures\">\n";
     for (const PageFigure& one : map.bodies) out_ += figure(one, "pair");
     out_ += "</div>\n";
@@ -290,6 +291,14 @@ class Page {
     if (map.timelines.size() > 1) out_ += "</details>\n";
     actuators(map);
     out_ += "</section>\n";
+  }
+
+  void watch(const MapView& view, const Candidate& candidate) {
+    const std::string why = view.value ? fmt::format("in which {} does worst: {}{}", html_text(candidate.law),
+                                                     number_text(*view.value), unit_of(headline()))
+                                       : "which has the most contacts";
+    add(out_, "<p><a href=\"{}\">Watch it move</a>: the trace <strong>{}</strong>, {}.</p>\n", html_text(view.file),
+        html_text(view.trace), why);
   }
 
   static std::string counted_contacts(std::size_t count) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct PageActuator {
   std::size_t contacts = 0;
 };
 
+/// A page of 'vestige view' that shows a map on the trace that tells most about it.
+struct MapView {
+  std::string file;  ///< beside the report, with '/'
+  std::string trace;
+  std::optional<double> value;  ///< of the headline
+};
+
 /// The part of the report about one map.
 struct MapSection {
   std::string map;
@@ -28,6 +36,7 @@ struct MapSection {
   std::size_t contacts = 0;
   std::size_t unmapped = 0;  ///< contacts on skin without an actuator
   std::vector<std::string> warnings;
+  std::optional<MapView> view;
   std::vector<PageFigure> bodies;     ///< pairs of front and back views
   std::vector<PageFigure> errors;     ///< errors over time, laws side by side
   std::vector<PageFigure> timelines;  ///< the map's best law first
@@ -41,7 +50,8 @@ struct ReportPage {
   std::string shown_trace;
 };
 
-/// Returns the report: one HTML document that refers to nothing outside itself and needs no script.
+/// Returns the report: one HTML document that needs nothing outside itself and no script. It refers to the pages of
+/// `MapView` alone.
 std::string report_html(const ReportPage& page);
 
 }  // namespace vestige::plot

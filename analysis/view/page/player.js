@@ -67,6 +67,20 @@ class Player {
       `${head.error_mm.skin} mm from its place, and colliders are at most ${head.error_mm.colliders} mm from theirs.`;
     for (const warning of head.warnings) byId("warnings").append(element("li", warning));
     byId("warnings").hidden = head.warnings.length === 0;
+    this.showTotals();
+  }
+
+  showTotals() {
+    const rows = [];
+    for (const total of this.trace.people.flatMap((person) => person.totals())) {
+      const [collider, most] = [...total.of].reduce((best, one) => (one[1] > best[1] ? one : best), ["", 0]);
+      const by = most === 0 ? "–" : `${collider} (${most})`;
+      const cells = [[total.name, ""], [total.on_s.toFixed(3), "n"], [`${total.contacts}`, "n"], [by, "n"]];
+      if (most > 0) cells.title = `collider ${collider}: ${most} of ${total.contacts} contacts`;
+      rows.push(cells);
+    }
+    byId("totals-title").hidden = rows.length === 0;
+    this.fillTable("totals", [["Actuator", ""], ["On, s", "n"], ["Contacts", "n"], ["Mostly by", "n"]], rows, rows.length);
   }
 
   fillChoices() {
@@ -282,11 +296,15 @@ class Player {
     byId("scrubber").setAttribute("aria-valuetext", `frame ${this.trace.frame[row]}`);
     const contacts = [];
     let count = 0;
-    for (const person of this.trace.people) {
-      const [first, end] = person.contactsOf(row);
-      count += end - first;
-      for (let i = first; i < end && contacts.length < kMostListed; ++i) contacts.push(this.contactCells(person, i));
-    }
+    for (const alone of [1, 0])  // first what one side alone has, which the table must not cut off
+      for (const person of this.trace.people) {
+        const [first, end] = person.contactsOf(row);
+        for (let i = first; i < end; ++i) {
+          if (person.alone[i] !== alone) continue;
+          ++count;
+          if (contacts.length < kMostListed) contacts.push(this.contactCells(person, i));
+        }
+      }
     byId("count").textContent = `${count}`;
     this.fillTable("contacts", [["Collider", "n"], ["Triangle", "n"], ["t", "n"], ["Actuator", ""]], contacts, count);
     this.showMotors(row);

@@ -45,7 +45,7 @@ class Raster {
     const lines = Math.max(1, this.lines.length);
     this.line_px = Math.min(kRowHeight_px, kMostHeight_px / lines);
     this.height = Math.ceil(this.line_px * lines) + 2;
-    this.left = this.line_px >= kLeastLabelled_px ? Math.min(170, Math.round(this.width * 0.3)) : 8;
+    this.left = this.line_px >= kLeastLabelled_px ? Math.min(this.trace.head.sides.length > 1 ? 250 : 170, Math.round(this.width * 0.3)) : 8;
     this.canvas.style.height = `${this.height}px`;
     for (const canvas of [this.canvas, this.picture]) {
       canvas.width = this.width * ratio;
@@ -98,7 +98,7 @@ class Raster {
       if (this.line_px >= kLeastLabelled_px) this.paintLabel(context, line, top, style.getPropertyValue("--ink"));
       if (line.number > 0) this.paintDuty(context, line, top);
     });
-    this.paintContacts(context, style.getPropertyValue("--ink"));
+    this.paintContacts(context, style);
   }
 
   paintLabel(context, line, top, ink) {
@@ -128,8 +128,8 @@ class Raster {
   }
 
   /** At most one tick for each pixel of a line. */
-  paintContacts(context, ink) {
-    for (const alone of [0, 1]) this.paintTicks(context, alone, alone ? "#d9005a" : ink);
+  paintContacts(context, style) {
+    for (const alone of [0, 1]) this.paintTicks(context, alone, style.getPropertyValue(alone ? "--alone" : "--ink"));
   }
 
   paintTicks(context, alone, colour) {

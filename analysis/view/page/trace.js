@@ -103,6 +103,27 @@ class Person {
     return [lastUpTo(this.contact_row, row - 1) + 1, lastUpTo(this.contact_row, row) + 1];
   }
 
+  /** How long each actuator is on in the whole trace, and the contacts that it got, by collider; from most to least. */
+  totals() {
+    const {time_s, last_s} = this.scene;
+    const totals = this.changes.map((changes, i) => {
+      let on_s = 0;
+      changes.row.forEach((row, k) => {
+        const end_s = k + 1 < changes.row.length ? time_s[changes.row[k + 1]] : last_s;
+        if (changes.duty[k] > 0) on_s += end_s - time_s[row];
+      });
+      return {name: this.who + this.actuatorName(i + 1), on_s, contacts: 0, of: new Map()};
+    });
+    this.contact_actuator.forEach((number, i) => {
+      if (number === 0) return;
+      const total = totals[number - 1];
+      const collider = this.scene.colliders.id[this.contact_collider[i]];
+      ++total.contacts;
+      total.of.set(collider, (total.of.get(collider) || 0) + 1);
+    });
+    return totals.sort((a, b) => b.on_s - a.on_s || b.contacts - a.contacts);
+  }
+
   actuatorName(number) {
     return number === 0 ? "no actuator" : this.info.actuators[number - 1].name;
   }

@@ -91,6 +91,45 @@ TEST_F(BatchCommandLine, JudgesLawsUnderWhichSpheresAreFeltAndReportsThem) {
   EXPECT_THAT(refused.standard_error, HasSubstr("names actuator 99 of torso40, which has only 40"));
 }
 
+// The report has a page for each of the best three maps, on the trace in which it does worst, if that is still there.
+TEST_F(BatchCommandLine, ItsReportShowsTheBestMapsInMotion) {
+  record({"mine.mcap"});
+  const test::Outcome batch =
+      run("vestige batch --maps paper6 torso16 torso40 body --traces slide swarm mine.mcap --count 30 --laws "
+          "gaussian,speed "
+          "--full-speed 2 --rate 200 --duration 0.5 -o out -q");
+  ASSERT_EQ(batch.exit_code, 0) << batch.standard_error;
+  const auto best = json_in("out/ranking.json")["ranking"][0];
+  const std::string map = best["map"];
+  const std::string metric = json_in("out/ranking.json")["rank_by"];
+  std::map<double, std::string> traces;  // by how well they do
+  for (const auto& one : json_in("out/scores.json")["scores"])
+    if (one["map"] == map && one["law"] == best["law"] && one["values"][metric].is_number())
+      traces[one["values"][metric].get<double>()] = one["trace"];
+  ASSERT_EQ(traces.size(), 3U) << "lower is better";
+  const auto report = [&] {
+    const test::Outcome drawn = run("vestige plot report out --top 4 --force");
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.standard_error;
+    EXPECT_EQ(drawn.standard_error, "");
+    return read_text_file(folder_ / "out/report.html");
+  };
+  const auto link_to = [&](const std::string& trace) {
+    return "<a href=\"figures/" + map + "-" + trace + ".html\">Watch it move</a>: the trace <strong>" + trace;
+  };
+  const std::string worst = traces.rbegin()->second;
+  const std::string text = report();
+  EXPECT_THAT(text, HasSubstr(link_to(worst)));
+  EXPECT_EQ(run("grep -o 'Watch it move' out/report.html | wc -l").standard_output, "3\n");
+  const std::string page = read_text_file(folder_ / ("out/figures/" + map + "-" + worst + ".html"));
+  EXPECT_THAT(page, AllOf(HasSubstr("<title>" + worst), HasSubstr("\"map " + map), HasSubstr("hold 60 ms")));
+
+  ASSERT_EQ(run("rm -f out/traces/" + worst + ".mcap; [ -e " + worst + ".mcap ] && cp out/traces/slide.mcap " + worst +
+                ".mcap; true")
+                .exit_code,
+            0);
+  EXPECT_THAT(report(), AllOf(Not(HasSubstr(link_to(worst))), HasSubstr(link_to(std::next(traces.rbegin())->second))));
+}
+
 TEST_F(BatchCommandLine, GivesAllThatIsNeededToRecomputeTheRankingElsewhere) {
   ASSERT_EQ(run("vestige batch --maps builtin torso40 --traces hug slide --seeds 1:6 --laws binary,phantom "
                 "--rate 100 --duration 0.5 --unfelt-mm 150 -o out -q")

@@ -191,6 +191,18 @@ TEST_F(AccuracyCommandLine, RefusesWhatItCannotMeasureBeforeAnyWork) {
   expect_refused("--events 0", "--events");
 }
 
+TEST_F(AccuracyCommandLine, APageOfWhatAnEarlierRunMissedDoesNotStay) {
+  std::string with_figure = kSmall;
+  with_figure.erase(with_figure.find("--no-figure"));
+  ASSERT_EQ(run(with_figure + " --method static --colliders still -o a").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a/missed.html"));
+  EXPECT_EQ(run(with_figure + " --method ccd --colliders still -o a").exit_code, 1) << "it is there already";
+  const test::Outcome exact = run(with_figure + " --method ccd --colliders still -o a --force");
+  EXPECT_EQ(exact.exit_code, 0) << exact.standard_error;
+  EXPECT_THAT(exact.standard_output, Not(HasSubstr("missed.html"))) << "ccd misses nothing";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a/missed.html"));
+}
+
 TEST_F(AccuracyCommandLine, DoesNotOverwriteWithoutForce) {
   ASSERT_EQ(run("mkdir mine && echo mine > mine/run.json").exit_code, 0);
   EXPECT_EQ(run(std::string(kSmall) + "-o mine").exit_code, 1);

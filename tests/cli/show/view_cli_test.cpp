@@ -1,11 +1,15 @@
 // Pages of `vestige view`, opened in a real browser as a reader does.
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <sstream>
 
 #include "tests/support/command_line.hpp"
+#include "tests/support/duty_rows.hpp"
 #include "tests/support/npm.hpp"
 
 namespace vestige {
@@ -64,6 +68,8 @@ class View : public test::CommandLineTest {
     ASSERT_LE(run("vestige record -q --live - -o again.mcap < again.ndjson").exit_code, 3);
   }
 
+  void expect_totals(const json& page, const std::map<std::int64_t, std::vector<Row>>& contacts) const;
+
   /// The rows of contacts.csv by frame.
   std::map<std::int64_t, std::vector<Row>> contacts_by_frame() const {
     std::map<std::int64_t, std::vector<Row>> rows;
@@ -105,6 +111,39 @@ TEST_F(View, PlaysToTheEndWhereTheReaderDoesNotMind) {
   EXPECT_EQ(seen[0]["frame"], 199);
 }
 
+/// Expects in the table of the whole trace what contacts.csv and timeline.csv say: from the motor that is on longest to
+/// the one that is on shortest.
+void View::expect_totals(const json& page, const std::map<std::int64_t, std::vector<Row>>& contacts) const {
+  std::map<std::string, std::map<std::string, int>> of_collider;  // by actuator
+  for (const auto& [frame, rows] : contacts)
+    for (const Row& row : rows) ++of_collider[page["actuators"][std::stoul(row[9])]][row[2]];
+  const std::vector<test::Row> timeline = test::read_timeline(folder_ / "timeline.csv");
+  double longest_s = 1e9;
+  ASSERT_EQ(page["totals"].size(), timeline.front().level.size());
+  for (const json& total : page["totals"]) {
+    const std::string name = total[0];
+    const auto column = std::ranges::find(page["actuators"], json(name)) - page["actuators"].begin() - 1;
+    double on_s = 0;
+    for (std::size_t i = 0; i + 1 < timeline.size(); ++i)
+      if (timeline[i].level[static_cast<std::size_t>(column)] > 0) on_s += timeline[i + 1].time_s - timeline[i].time_s;
+    EXPECT_NEAR(std::stod(total[1].get<std::string>()), on_s, 0.0006) << name;
+    EXPECT_LE(on_s, longest_s + 1e-9) << name;
+    longest_s = on_s;
+    int all = 0;
+    int most = 0;
+    for (const auto& [collider, count] : of_collider[name]) {
+      all += count;
+      most = std::max(most, count);
+    }
+    EXPECT_EQ(total[2], std::to_string(all)) << name;
+    const std::string by = total[3];  // "14 (4)"
+    const std::string collider = by.substr(0, by.find(' '));
+    if (all == 0) continue;
+    EXPECT_EQ(by, fmt::format("{} ({})", collider, of_collider[name][collider])) << name;
+    EXPECT_EQ(of_collider[name][collider], most) << name;
+  }
+}
+
 // Every contact is on the page, at its frame, on the skin and at its collider, as exactly as the page says.
 TEST_F(View, ShowsTheContactsOfTheCsv) {
   make("--json view.json", "--count 100 --duration 1");
@@ -122,6 +161,7 @@ TEST_F(View, ShowsTheContactsOfTheCsv) {
               AllOf(Gt(0), Lt(error_mm["skin"].get<double>() + error_mm["colliders"].get<double>())));
   EXPECT_THAT(error_mm["skin"].get<double>(), Lt(1)) << "a page for the eye";
   seen.erase(0);
+  expect_totals(seen[0], expected);
   auto next = expected.begin();
   for (const json& page : seen) {
     ASSERT_NE(next, expected.end());
@@ -309,6 +349,18 @@ TEST_F(View, MarksWhatOneDetectorMisses) {
   EXPECT_THAT(same[0]["about"].get<std::string>(), HasSubstr("0 on one side alone"));
 }
 
+TEST_F(View, AccuracyShowsWhatIsMissed) {
+  const test::Outcome measured =
+      run("vestige accuracy --detector cpu,boxes --method static --colliders swarm,still --count 20 --duration 0.4 "
+          "--rate 90 --truth-rate 4000 --events 1 --check-frames 5 --passes 1 -o a");
+  ASSERT_EQ(measured.exit_code, 0) << measured.standard_error;
+  EXPECT_THAT(measured.standard_output, HasSubstr("a/missed.html: What cpu, static misses at 90 Hz in still;"));
+  const json seen = browse({{"steps", {kSee, press("d")}}}, "a/missed.html");
+  EXPECT_EQ(seen[0]["title"], "What cpu, static misses at 90 Hz in still");
+  EXPECT_EQ(seen[0]["sides"], json({"cpu, static", "cpu, ccd"}));
+  EXPECT_THAT(seen[1]["alone"], ElementsAre(HasSubstr("cpu, ccd: ")));
+}
+
 TEST_F(View, RefusesSidesThatCannotBe) {
   record_small();
   for (const auto& [flags, words] :
@@ -318,6 +370,7 @@ TEST_F(View, RefusesSidesThatCannotBe) {
                                                         {"--detectors cpu,exact --maps paper6 torso40", "excludes"},
                                                         {"--detectors cpu,exact --detector cpu", "excludes"},
                                                         {"--maps paper6 torso40 --map none", "excludes"},
+                                                        {"--maps paper6 -", "--maps: a map cannot come from"},
                                                         {"--maps paper6 paper6", "the same"}})
     expect_failure("vestige view small.mcap " + flags, 2, {words}, "small.html");
   expect_failure("vestige view small.mcap --maps paper6 nowhere.png", 1, {"nowhere.png"}, "small.html");

@@ -1,0 +1,63 @@
+#include "analysis/accuracy/missed_page.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "analysis/base/provenance.hpp"
+#include "analysis/run/seen_run.hpp"
+#include "analysis/view/page.hpp"
+#include "analysis/view/trace_page.hpp"
+
+namespace vestige {
+
+namespace {
+
+double missed_share(const AccuracyPoint& point) {
+  const EventCounts& events = point.tolerated.all;
+  return events.true_events() == 0 ? 0 : static_cast<double>(events.missed) / static_cast<double>(events.true_events());
+}
+
+}  // namespace
+
+std::optional<MostMissed> most_missed(std::span<const AccuracyScene> scenes) {
+  std::optional<MostMissed> most;
+  double share = 0;
+  for (const AccuracyScene& scene : scenes)
+    for (const AccuracyPoint& point : scene.points) {
+      const double missed = missed_share(point);
+      if (missed <= share) continue;
+      most = {&scene, &point};
+      share = missed;
+    }
+  return most;
+}
+
+std::string missed_page(const MovingScene& scene, const ActuatorMap& map, double rate_hz, std::vector<MissedSide> sides,
+                        const std::string& title) {
+  const std::array<MappedPerson, 1> people = {{{scene.avatar, map}}};
+  const LawFlags law;
+  std::vector<std::unique_ptr<SeenRun>> runs;
+  std::vector<SeenRun*> run_of_side;
+  std::vector<std::string> titles;
+  std::vector<PagePerson> bodies;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    runs.push_back(std::make_unique<SeenRun>(SeenRun::Input{people, scene.collider_ids, law, kPagePlanes},
+                                             [&](PlaneSet) { return std::move(sides[i].detectors); }));
+    run_of_side.push_back(runs.back().get());
+    titles.push_back(sides[i].title);
+    bodies.push_back({"", scene.avatar, map, 0, i});
+  }
+  PagePacker packer(bodies, titles, scene.collider_ids);
+  std::vector<std::uint64_t> contacts(sides.size());
+  SceneSampler sampler(scene, rate_hz);
+  const std::uint64_t last = last_frame_within(scene, rate_hz);
+  for (std::uint64_t i = 0; i <= last; ++i) pack_frame(sampler.next(), run_of_side, packer, contacts);
+  PageContent content = packer.finish();
+  content.head["about"] = {"vestige " + commit().substr(0, 10)};
+  content.head["warnings"] = nlohmann::ordered_json::array();
+  return make_page(title, content);
+}
+
+}  // namespace vestige
