@@ -57,11 +57,12 @@ void add_entry(Entries& entries, VizBuilder& builder, const char* key, const std
 
 }  // namespace
 
-BodyScene::BodyScene(std::span<const MappedPerson> people, std::span<const std::uint32_t> collider_ids)
+BodyScene::BodyScene(std::span<const MappedPerson> people, std::span<const std::uint32_t> collider_ids,
+                     const VizBodies& bodies)
     : people_(people.begin(), people.end()),
       collider_ids_(collider_ids.begin(), collider_ids.end()),
       builder_(std::make_unique<VizBuilder>()),
-      bodies_(avatars_of(people)) {
+      bodies_(bodies) {
   for (const MappedPerson& person : people_) {
     Skin& skin = skins_.emplace_back();
     for (const glm::uvec3& triangle : person.avatar.triangles)
@@ -74,7 +75,6 @@ BodyScene::~BodyScene() = default;
 
 mcap::Bytes BodyScene::contacts(const TraceFrame& frame, std::span<const SeenPerson> seen) {
   VizScene scene(*builder_, frame.time_ns, kContactShown_ns);
-  bodies_.take(frame);
   // Yellow is the colour of no region, and of no collider.
   const ColourOffset yellow = foxglove::CreateColor(builder_->buffer, 1.0, 0.92, 0.1, 1.0);
   for (std::size_t person = 0; person < seen.size(); ++person) {
@@ -113,8 +113,8 @@ mcap::Bytes BodyScene::skin(const TraceFrame& frame) {
   flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
   std::vector<glm::dvec3> positions_m;
   for (std::size_t person = 0; person < people_.size(); ++person) {
+    if (!bodies_.people()[person].is_there()) continue;
     const Pose& pose = frame.poses[person];
-    if (pose.nodes.empty()) continue;
     const std::size_t count = people_[person].map.actuator_count;
     skin_reference(people_[person].avatar, pose, pose.origin_m, positions_m);
     std::vector<flatbuffers::Offset<foxglove::Point3>> points;
@@ -136,6 +136,7 @@ mcap::Bytes BodyScene::skin(const TraceFrame& frame) {
     scene.add(bodies_.people()[person].frame, viz_name("skin", person),
               [&](auto& entity) { entity.add_triangles(triangles); });
   }
+  scene.delete_gone(shown_);
   scene.finish();
   return builder_->finished();
 }

@@ -58,8 +58,9 @@ std::vector<AddedChannel> added_channels() {
 
 VizTrace::VizTrace(const Input& input, const mcap::Writer::Sink& sink)
     : copy_(input.source, sink, added_channels()),
-      scene_(avatars_of(input.people)),
-      body_(input.people, input.collider_ids),
+      bodies_(avatars_of(input.people)),
+      scene_(bodies_),
+      body_(input.people, input.collider_ids, bodies_),
       actuator_names_(viz_actuator_names(input.people)),
       pace_(viz_format::kRate_hz) {
   if (input.mesh_rate_hz > 0) mesh_pace_.emplace(input.mesh_rate_hz);
@@ -71,19 +72,21 @@ void VizTrace::add(std::size_t channel, const TraceFrame& frame, mcap::Bytes dat
 
 void VizTrace::write(const TraceFrame& frame, std::span<const SeenPerson> seen) {
   copy_.copy_through(frame.index);
+  std::size_t contacts = 0;
+  for (const SeenPerson& person : seen) contacts += person.row.hits();
+  contacts_ += contacts;
   const bool is_due = pace_.is_due(frame.time_ns);
+  const bool is_mesh_due = mesh_pace_ && mesh_pace_->is_due(frame.time_ns);
+  if (is_due || is_mesh_due || contacts > 0) bodies_.take(frame);
   if (is_due) {
     pace_.end_slot(frame.time_ns);
     add(kTransforms, frame, scene_.transforms(frame));
     add(kScene, frame, scene_.scene(frame));
   }
-  if (mesh_pace_ && mesh_pace_->is_due(frame.time_ns)) {
+  if (is_mesh_due) {
     mesh_pace_->end_slot(frame.time_ns);
     add(kMesh, frame, body_.skin(frame));
   }
-  std::size_t contacts = 0;
-  for (const SeenPerson& person : seen) contacts += person.row.hits();
-  contacts_ += contacts;
   if (contacts > 0) add(kContacts, frame, body_.contacts(frame, seen));
   add_duties(frame, seen, is_due);
 }

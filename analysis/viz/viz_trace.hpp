@@ -13,6 +13,7 @@
 #include "traces/mcap/writer.hpp"
 #include "traces/repair/trace_copy.hpp"
 #include "traces/scene/trace.hpp"
+#include "traces/viz/viz_bodies.hpp"
 #include "traces/viz/viz_messages.hpp"
 #include "traces/viz/viz_pace.hpp"
 
@@ -53,6 +54,7 @@ class VizTrace {
   void add_duties(const TraceFrame& frame, std::span<const SeenPerson> seen, bool is_due);
 
   TraceCopy copy_;
+  VizBodies bodies_;
   VizEncoder scene_;
   BodyScene body_;
   std::vector<std::string> actuator_names_;

@@ -98,7 +98,8 @@ class TraceWriter::Implementation {
   AppendFile file_;
   mcap::Writer writer_;
   MessageEncoder encoder_;
-  std::optional<VizEncoder> viz_;
+  std::optional<VizBodies> bodies_;
+  std::optional<VizEncoder> viz_;  ///< of the bodies
   VizPace viz_pace_ = VizPace(viz_format::kRate_hz);
   int version_;
   std::vector<std::size_t> node_counts_;  ///< by person
@@ -153,7 +154,7 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
     std::vector<const Avatar*> avatars;
     avatars.reserve(people.size());
     for (const TracePerson& person : people) avatars.push_back(&person.avatar);
-    viz_.emplace(avatars);
+    viz_.emplace(bodies_.emplace(avatars));
     writer_.write(viz_format::transforms_schema());
     writer_.write(viz_format::scene_schema());
     for (const mcap::Channel& channel : viz_format::channels()) writer_.write(channel);
@@ -230,6 +231,7 @@ void TraceWriter::Implementation::write_message(Stream stream, mcap::Bytes data)
 void TraceWriter::Implementation::write_viz(const TraceFrame& frame) {
   if (!viz_ || !viz_pace_.is_due(frame.time_ns)) return;
   viz_pace_.end_slot(frame.time_ns);
+  bodies_->take(frame);
   write_message(viz_format::kTransformsId, viz_->transforms(frame));
   write_message(viz_format::kSceneId, viz_->scene(frame));
 }

@@ -27,6 +27,12 @@ VizPlacement placement_of(const glm::dmat4& matrix) {
   return placement;
 }
 
+bool is_finite(const glm::dmat4& matrix) {
+  for (int column = 0; column < 4; ++column)
+    if (!is_drawable(glm::dvec3(matrix[column]))) return false;
+  return true;
+}
+
 std::vector<std::string> frame_names(const Avatar& avatar, const std::string& prefix, std::set<std::string>& taken) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < avatar.nodes.size(); ++i) {
@@ -39,6 +45,10 @@ std::vector<std::string> frame_names(const Avatar& avatar, const std::string& pr
 }
 
 }  // namespace
+
+bool is_drawable(const glm::dvec3& place) {
+  return std::isfinite(place.x) && std::isfinite(place.y) && std::isfinite(place.z);
+}
 
 std::string viz_name(std::string_view name, std::size_t person) {
   return person == 0 ? std::string(name) : fmt::format("{} {}", name, person + 1);
@@ -62,8 +72,10 @@ void VizBodies::take(const TraceFrame& frame) {
     VizBody& body = people_[person];
     body.world.clear();
     body.node_placement.clear();
-    if (frame.poses[person].nodes.empty()) continue;
-    world_matrices(body.skeleton, frame.poses[person], body.world);
+    const Pose& pose = frame.poses[person];
+    if (pose.nodes.empty() || !is_drawable(pose.origin_m)) continue;
+    world_matrices(body.skeleton, pose, body.world);
+    if (!std::ranges::all_of(body.world, is_finite)) body.world.clear();
     for (const glm::dmat4& matrix : body.world) body.node_placement.push_back(placement_of(matrix));
   }
 }

@@ -24,7 +24,8 @@ struct VizBody {
   Avatar skeleton;                       ///< only its nodes, their order and the root
   std::string frame;                     ///< of the avatar: "avatar", of a later person "avatar 2"
   std::vector<std::string> node_frames;  ///< one for each node
-  // Of the frame that `VizBodies::take` took last. Empty if the person's pose is missing.
+  // Of the frame that `VizBodies::take` took last. Empty if the person's pose is missing or has a number that is not
+  // finite.
   std::vector<glm::dmat4> world;             ///< of the nodes, relative to the avatar's frame
   std::vector<VizPlacement> node_placement;  ///< of the nodes, relative to the avatar's frame
 
@@ -48,6 +49,9 @@ class VizBodies {
  private:
   std::vector<VizBody> people_;
 };
+
+/// Whether viewers can draw something here: each number is finite.
+bool is_drawable(const glm::dvec3& place);
 
 /// Returns `name` for the first person, who counts from 0, and "NAME 2" for the second.
 std::string viz_name(std::string_view name, std::size_t person);

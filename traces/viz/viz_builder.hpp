@@ -2,11 +2,15 @@
 
 #include <schemas/scene_update_generated.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "traces/mcap/record.hpp"
@@ -20,9 +24,12 @@ struct VizBuilder {
   // A reader with its own schemas uses its own default values, so every field is written.
   VizBuilder() { buffer.ForceDefaults(true); }
 
+  /// Seconds have 32 bits, which last for 136 years: times after the last second are that.
   static foxglove::Time time(std::int64_t time_ns) {
     constexpr std::int64_t kSecond_ns = 1'000'000'000;
-    return {static_cast<std::uint32_t>(time_ns / kSecond_ns), static_cast<std::uint32_t>(time_ns % kSecond_ns)};
+    constexpr std::int64_t kLast_ns = std::numeric_limits<std::uint32_t>::max() * kSecond_ns;
+    const std::int64_t shown_ns = std::clamp<std::int64_t>(time_ns, 0, kLast_ns);
+    return {static_cast<std::uint32_t>(shown_ns / kSecond_ns), static_cast<std::uint32_t>(shown_ns % kSecond_ns)};
   }
   auto vector(const glm::dvec3& v) { return foxglove::CreateVector3(buffer, v.x, v.y, v.z); }
   auto point(const glm::dvec3& v) { return foxglove::CreatePoint3(buffer, v.x, v.y, v.z); }
@@ -64,11 +71,13 @@ class VizScene {
     entity.add_frame_locked(true);
     fill(entity);
     entities_.push_back(entity.Finish());
+    added_.insert(id);
   }
-  void remove(const std::string& id) {
-    const auto name = buffer_.CreateString(id);
-    deletions_.push_back(
-        foxglove::CreateSceneEntityDeletion(buffer_, &time_, foxglove::SceneEntityDeletionType::MATCHING_ID, name));
+  /// Deletes the entities of `shown` that were not added, and keeps in it those that were.
+  void delete_gone(std::set<std::string>& shown) {
+    for (const std::string& id : shown)
+      if (!added_.contains(id)) remove(id);
+    shown = std::move(added_);
   }
   void finish() {
     const auto deletions = buffer_.CreateVector(deletions_);
@@ -77,9 +86,16 @@ class VizScene {
   }
 
  private:
+  void remove(const std::string& id) {
+    const auto name = buffer_.CreateString(id);
+    deletions_.push_back(
+        foxglove::CreateSceneEntityDeletion(buffer_, &time_, foxglove::SceneEntityDeletionType::MATCHING_ID, name));
+  }
+
   flatbuffers::FlatBufferBuilder& buffer_;
   foxglove::Time time_;
   foxglove::Duration lifetime_;
+  std::set<std::string> added_;  ///< ids of the entities
   std::vector<flatbuffers::Offset<foxglove::SceneEntity>> entities_;
   std::vector<flatbuffers::Offset<foxglove::SceneEntityDeletion>> deletions_;
 };

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "traces/viz/viz_builder.hpp"
 #include "traces/viz/viz_format.hpp"
@@ -23,10 +22,6 @@ using Transforms = std::vector<flatbuffers::Offset<foxglove::FrameTransform>>;
 /// Puts the z axis on the y axis of the frame above.
 glm::dquat z_on_y() {
   return {std::sqrt(0.5), -std::sqrt(0.5), 0, 0};
-}
-
-std::string collider_name(std::uint32_t id) {
-  return fmt::format("collider {}", id);
 }
 
 flatbuffers::Offset<foxglove::FrameTransform> transform(VizBuilder& builder, std::int64_t time_ns,
@@ -59,15 +54,13 @@ void add_nodes(Transforms& transforms, VizBuilder& builder, std::int64_t time_ns
 
 }  // namespace
 
-VizEncoder::VizEncoder(const std::vector<const Avatar*>& avatars)
-    : builder_(std::make_unique<VizBuilder>()), bodies_(avatars) {}
+VizEncoder::VizEncoder(const VizBodies& bodies) : builder_(std::make_unique<VizBuilder>()), bodies_(bodies) {}
 
 VizEncoder::~VizEncoder() = default;
 
 mcap::Bytes VizEncoder::transforms(const TraceFrame& frame) {
   flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
   buffer.Clear();
-  bodies_.take(frame);
   Transforms transforms;
   for (std::size_t person = 0; person < bodies_.people().size(); ++person) {
     const VizBody& body = bodies_.people()[person];
@@ -75,7 +68,8 @@ mcap::Bytes VizEncoder::transforms(const TraceFrame& frame) {
     transforms.push_back(transform(*builder_, frame.time_ns, viz_format::kWorld, body.frame,
                                    {.position_m = frame.poses[person].origin_m}));
     add_nodes(transforms, *builder_, frame.time_ns, body);
-    if (person > 0) continue;
+    if (!upright_) upright_ = person;
+    if (person != *upright_) continue;
     const VizPlacement& root = body.node_placement[static_cast<std::size_t>(body.skeleton.root_node)];
     transforms.push_back(transform(*builder_, frame.time_ns, body.frame, viz_format::kUpright,
                                    {.position_m = root.position_m, .rotation = z_on_y()}));
@@ -88,7 +82,6 @@ mcap::Bytes VizEncoder::transforms(const TraceFrame& frame) {
 mcap::Bytes VizEncoder::scene(const TraceFrame& frame) {
   VizScene scene(*builder_, frame.time_ns);
   flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
-  bodies_.take(frame);
   for (std::size_t person = 0; person < bodies_.people().size(); ++person) {
     const VizBody& body = bodies_.people()[person];
     if (!body.is_there()) continue;
@@ -109,16 +102,14 @@ mcap::Bytes VizEncoder::scene(const TraceFrame& frame) {
   }
 
   const auto colour = foxglove::CreateColor(buffer, 0.9, 0.35, 0.2, 1.0);
-  std::set<std::uint32_t> shown;
   for (const ColliderSample& collider : frame.colliders) {
-    shown.insert(collider.id);
+    if (!is_drawable(collider.position_m) || !std::isfinite(collider.radius_m)) continue;
     const double diameter_m = collider.radius_m > 0 ? 2 * double{collider.radius_m} : kPoint_m;
     const auto spheres = builder_->sphere(collider.position_m, diameter_m, colour);
-    scene.add(viz_format::kWorld, collider_name(collider.id), [&](auto& entity) { entity.add_spheres(spheres); });
+    scene.add(viz_format::kWorld, fmt::format("collider {}", collider.id),
+              [&](auto& entity) { entity.add_spheres(spheres); });
   }
-  for (const std::uint32_t id : shown_)
-    if (!shown.contains(id)) scene.remove(collider_name(id));
-  shown_ = std::move(shown);
+  scene.delete_gone(shown_);
   scene.finish();
   return builder_->finished();
 }
@@ -127,8 +118,8 @@ std::uint64_t VizEncoder::most_bytes(const TraceFrame& frame) const {
   constexpr std::uint64_t kFixedBytes = 1024;
   constexpr std::uint64_t kBodyBytes = 1024;
   constexpr std::uint64_t kNodeBytes = 384;
-  constexpr std::uint64_t kColliderBytes = 448;
-  std::uint64_t bytes = kFixedBytes + kColliderBytes * (frame.colliders.size() + shown_.size());
+  constexpr std::uint64_t kEntityBytes = 448;  // of a collider, or of a deletion
+  std::uint64_t bytes = kFixedBytes + kEntityBytes * (frame.colliders.size() + shown_.size());
   for (const VizBody& body : bodies_.people()) {
     bytes += kBodyBytes + kNodeBytes * body.node_frames.size();
     for (const std::string& name : body.node_frames) bytes += 2 * name.size();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "traces/base/nanoseconds.hpp"
 
@@ -16,8 +17,10 @@ class VizPace {
   /// Ends the slot of this frame, which was due. Times are rounded to whole nanoseconds, so that a frame may come 1 ns
   /// before the slot that it belongs to.
   void end_slot(std::int64_t time_ns) {
-    const double slots = std::floor(static_cast<double>(time_ns + 1) / kNanosecondsPerSecond * rate_hz_);
-    next_ns_ = static_cast<std::int64_t>(std::floor((slots + 1) / rate_hz_ * kNanosecondsPerSecond));
+    constexpr double kEnd_ns = 0x1p63;  // of the numbers that fit
+    const double slots = std::floor((static_cast<double>(time_ns) + 1) / kNanosecondsPerSecond * rate_hz_);
+    const double next_ns = std::floor((slots + 1) / rate_hz_ * kNanosecondsPerSecond);
+    next_ns_ = next_ns < kEnd_ns ? static_cast<std::int64_t>(next_ns) : std::numeric_limits<std::int64_t>::max();
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -11,11 +12,18 @@
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/trace_file/trace_reader.hpp"
+#include "traces/viz/viz_builder.hpp"
+#include "traces/viz/viz_pace.hpp"
 
 namespace vestige {
 namespace {
 
 using nlohmann::json;
+using ::testing::Contains;
+using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
+using ::testing::UnorderedElementsAre;
 
 glm::dvec3 vector_of(const json& v) {
   return {v["x"].get<double>(), v["y"].get<double>(), v["z"].get<double>()};
@@ -109,7 +117,7 @@ TEST_F(VizTest, FramesAndSkeletonOfASecondPersonHaveTheirNumber) {
   EXPECT_EQ(frames.at("2/" + root)["parent_frame_id"], "avatar 2");
   std::vector<std::string> entities;
   for (const json& entity : seen["/viz/scene"]["messages"][0]["entities"]) entities.push_back(entity["id"]);
-  EXPECT_THAT(entities, ::testing::IsSupersetOf({"skeleton", "skeleton 2"}));
+  EXPECT_THAT(entities, IsSupersetOf({"skeleton", "skeleton 2"}));
 }
 
 TEST_F(VizTest, TheSceneHasASphereForEveryColliderAndLinesForTheSkeleton) {
@@ -148,6 +156,68 @@ TEST_F(VizTest, TheSceneHasASphereForEveryColliderAndLinesForTheSkeleton) {
     }
   }
   EXPECT_EQ(deletions, 1U) << "collider 8 leaves once";
+}
+
+/// The ids of a message's entities or deletions, or its frames.
+std::vector<std::string> names_of(const json& list, const char* key) {
+  std::vector<std::string> names;
+  for (const json& one : list) names.push_back(one[key]);
+  return names;
+}
+
+TEST_F(VizTest, WhatHasNoPlaceIsTakenAway) {
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  TraceWriterOptions options = test::steady_options();
+  options.viz = Viz::kScene;
+  const TracePerson person = {avatar_, {.avatar_glb = builtin_avatar_glb()}};
+  TraceWriter writer(folder_ / "a.mcap", {}, {person, person}, options);
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    TraceFrame two = frame(i * 20);
+    two.poses.push_back(two.poses.front());
+    if (i == 0) two.poses[0].origin_m.y = kNowhere;
+    if (i == 2) two.poses[1].nodes.back().translation.x = std::numeric_limits<float>::infinity();
+    if (i == 2) two.colliders[0].position_m.z = kNowhere;
+    writer.write(two);
+  }
+  writer.finish();
+  const json seen = json::parse(test::run_node("read_viz.mjs", folder_ / "a.mcap"));
+  const json& scenes = seen["/viz/scene"]["messages"];
+  ASSERT_EQ(scenes.size(), 3U);
+  EXPECT_THAT(names_of(scenes[0]["entities"], "id"),
+              UnorderedElementsAre("skeleton 2", "collider 7", "collider 8", "collider 9"));
+  EXPECT_THAT(scenes[0]["deletions"], IsEmpty());
+  EXPECT_THAT(names_of(scenes[1]["entities"], "id"), IsSupersetOf({"skeleton", "skeleton 2"}));
+  EXPECT_THAT(scenes[1]["deletions"], IsEmpty());
+  EXPECT_THAT(names_of(scenes[2]["entities"], "id"), UnorderedElementsAre("skeleton", "collider 8", "collider 9"));
+  EXPECT_THAT(names_of(scenes[2]["deletions"], "id"), UnorderedElementsAre("skeleton 2", "collider 7"));
+  const json& frames = seen["/viz/tf"]["messages"];
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const json& transform : frames[i]["transforms"]) {
+      const std::string parent = transform["parent_frame_id"];
+      EXPECT_TRUE(transform["child_frame_id"] != "upright" || parent == "avatar 2") << parent;
+    }
+  EXPECT_THAT(names_of(frames[0]["transforms"], "child_frame_id"), Contains("upright"));
+  EXPECT_THAT(names_of(frames[1]["transforms"], "child_frame_id"), IsSupersetOf({"avatar", "upright"}));
+  EXPECT_THAT(names_of(frames[2]["transforms"], "child_frame_id"), Not(Contains("upright"))) << "it does not jump";
+}
+
+TEST(VizPaceTest, KnowsNoOverflow) {
+  constexpr std::int64_t kLast_ns = std::numeric_limits<std::int64_t>::max();
+  VizPace rare(1e-11);
+  EXPECT_TRUE(rare.is_due(0));
+  rare.end_slot(0);
+  EXPECT_FALSE(rare.is_due(kLast_ns - 1));
+  VizPace late(60);
+  late.end_slot(kLast_ns);
+  EXPECT_FALSE(late.is_due(kLast_ns - 1));
+}
+
+TEST(VizBuilderTest, TimesEndWithTheLastSecondOf32Bits) {
+  EXPECT_EQ(VizBuilder::time(1'500'000'000).sec(), 1U);
+  EXPECT_EQ(VizBuilder::time(1'500'000'000).nsec(), 500'000'000U);
+  const foxglove::Time last = VizBuilder::time(std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(last.sec(), std::numeric_limits<std::uint32_t>::max());
+  EXPECT_EQ(last.nsec(), 0U);
 }
 
 TEST_F(VizTest, ReadersOfTracesPassItOver) {
