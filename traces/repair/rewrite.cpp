@@ -105,11 +105,7 @@ void Rewriter::take_message(const mcap::StreamRecord& record) {
   if (!range_.contains(message.log_time)) {
     ++result_.left_out;
   } else if (!output_.write(message) && undefined_.insert(message.channel_id).second) {
-    result_.damages.add(
-        {record.offset, 0,
-         fmt::format(
-             "a Message of channel {}, which is not defined; from here on, messages of this channel are left out",
-             message.channel_id)});
+    result_.damages.add(undefined_channel(record.offset, message.channel_id));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -16,6 +17,9 @@ namespace {
 
 using mcap::Malformed;
 using mcap::Opcode;
+
+constexpr std::string_view kDefinedLate = "is defined inside a chunk only";
+constexpr std::string_view kDefinedTwice = "is defined twice, differently";
 
 /// Returns an id that the map does not have. The ids that writers choose are small, so this one is large.
 template <typename Record>
@@ -39,28 +43,28 @@ std::uint16_t id_of(mcap::Schema schema, std::map<std::uint16_t, mcap::Schema>& 
 
 TraceCopy::TraceCopy(const mcap::ByteSource& source, const mcap::Writer::Sink& sink,
                      std::span<const AddedChannel> added)
-    : source_(source), reader_(source) {
+    : source_(source), reader_(source), added_(added.begin(), added.end()) {
   mcap::require_mcap(source);
-  Definitions definitions = with_added(gather_definitions(source), added);
+  Definitions definitions = gather_definitions(source);
+  choose_ids(definitions);
+  for (const std::uint16_t id : replaced_) definitions.channels.erase(id);
   const std::string profile = definitions.header ? definitions.header->profile : std::string();
   const mcap::Compression compression = definitions.compression.value_or(mcap::Compression::kNone);
   output_.emplace(sink, profile, compression, std::move(definitions));
 }
 
-Definitions TraceCopy::with_added(Definitions definitions, std::span<const AddedChannel> added) {
-  for (const AddedChannel& one : added) topics_.insert(one.channel.topic);
-  for (const auto& [id, channel] : definitions.channels)
-    if (topics_.contains(channel.topic)) replaced_.insert(id);
-  for (const AddedChannel& one : added) {
-    mcap::Channel channel = one.channel;
-    channel.id = free_id(definitions.channels);
-    channel.schema_id = id_of(one.schema, definitions.schemas);
-    channels_.push_back(channel.id);
-    schemas_.insert(channel.schema_id);
-    definitions.channels.insert_or_assign(channel.id, std::move(channel));
+void TraceCopy::choose_ids(const Definitions& definitions) {
+  std::map<std::uint16_t, mcap::Channel> channels = definitions.channels;
+  std::map<std::uint16_t, mcap::Schema> schemas = definitions.schemas;
+  for (AddedChannel& one : added_) {
+    for (const auto& [id, channel] : definitions.channels)
+      if (channel.topic == one.channel.topic) replaced_.insert(id);
+    one.schema.id = id_of(one.schema, schemas);
+    one.channel.schema_id = one.schema.id;
+    one.channel.id = free_id(channels);
+    channels.emplace(one.channel.id, one.channel);
+    if (definitions.schemas.contains(one.schema.id)) shared_schemas_.insert(one.schema.id);
   }
-  for (const std::uint16_t id : replaced_) definitions.channels.erase(id);
-  return definitions;
 }
 
 void TraceCopy::copy_through(std::uint64_t frame) {
@@ -94,8 +98,7 @@ void TraceCopy::take(const mcap::StreamRecord& record) {
       take_definition(mcap::decode_channel(record.content));
       break;
     case Opcode::kMessage:
-      if (const mcap::Message message = mcap::decode_message(record.content); !replaced_.contains(message.channel_id))
-        output_->write(message);
+      take_message(record);
       break;
     case Opcode::kAttachment:
       // A new CRC must not make a damaged attachment look undamaged. The reader notes it.
@@ -111,32 +114,50 @@ void TraceCopy::take(const mcap::StreamRecord& record) {
   }
 }
 
+void TraceCopy::take_message(const mcap::StreamRecord& record) {
+  const mcap::Message message = mcap::decode_message(record.content);
+  if (replaced_.contains(message.channel_id)) return;
+  if (!output_->write(message) && undefined_.insert(message.channel_id).second)
+    damages_.add(undefined_channel(record.offset, message.channel_id));
+}
+
 void TraceCopy::take_definition(mcap::Schema schema) {
-  const auto known = output_->definitions().schemas.find(schema.id);
-  if (schemas_.contains(schema.id) && known->second != schema) refuse_late("schema", schema.id);
+  for (const AddedChannel& one : added_)
+    if (one.schema.id == schema.id && one.schema != schema)
+      refuse("schema", schema.id, shared_schemas_.contains(schema.id) ? kDefinedTwice : kDefinedLate);
   output_->add(std::move(schema));
 }
 
 void TraceCopy::take_definition(mcap::Channel channel) {
-  if (std::ranges::find(channels_, channel.id) != channels_.end()) refuse_late("channel", channel.id);
-  if (topics_.contains(channel.topic)) {
+  for (const AddedChannel& one : added_)
+    if (one.channel.id == channel.id) refuse("channel", channel.id, kDefinedLate);
+  if (std::ranges::any_of(added_, [&](const auto& one) { return one.channel.topic == channel.topic; })) {
     replaced_.insert(channel.id);
   } else {
     output_->add(std::move(channel));
   }
 }
 
-void TraceCopy::refuse_late(std::string_view kind, std::uint16_t id) const {
-  throw Error(source_.name(), fmt::format("{} {} is defined inside a chunk only", kind, id),
+void TraceCopy::refuse(std::string_view what, std::uint16_t id, std::string_view cause) const {
+  throw Error(source_.name(), fmt::format("{} {} {}", what, id, cause),
               "write it anew with 'vestige recompress', then take that file");
 }
 
+mcap::DamageList TraceCopy::damages() const {
+  mcap::DamageList all = reader_.damages();
+  all.add(damages_);
+  all.sort_by_offset();
+  return all;
+}
+
 void TraceCopy::write(std::size_t added, std::uint32_t sequence, std::uint64_t time_ns, mcap::Bytes data) {
-  output_->write(mcap::Message{.channel_id = channels_[added],
-                               .sequence = sequence,
-                               .log_time = time_ns,
-                               .publish_time = time_ns,
-                               .data = data});
+  const auto& [channel, schema] = added_[added];
+  if (!output_->definitions().channels.contains(channel.id)) {
+    output_->add(schema);
+    output_->add(channel);
+  }
+  output_->write(mcap::Message{
+      .channel_id = channel.id, .sequence = sequence, .log_time = time_ns, .publish_time = time_ns, .data = data});
 }
 
 void TraceCopy::finish() {

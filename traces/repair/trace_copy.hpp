@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "traces/mcap/byte_source.hpp"
@@ -17,7 +17,7 @@
 
 namespace vestige {
 
-/// A channel that a copy has beside those of the trace. Ids are chosen by the copy.
+/// A channel that a copy has beside those of the trace, if it has a message. Ids are chosen by the copy.
 struct AddedChannel {
   mcap::Channel channel;
   mcap::Schema schema;
@@ -27,8 +27,8 @@ struct AddedChannel {
 /// copied keeps its sequence, times and data to the bit; the compression is that of the source. The source's messages
 /// on topics of added channels are left out. Keeps the largest record and chunk in memory.
 ///
-/// Throws `Error` if the source is not an MCAP file, cannot be read, or defines a channel or schema late, with an id
-/// that an added one has. Exceptions of the sink pass through.
+/// Throws `Error` if the source is not an MCAP file, cannot be read, or defines a channel or schema late or
+/// differently, with an id that an added one has. Exceptions of the sink pass through.
 class TraceCopy {
  public:
   /// Keeps a reference to `source`.
@@ -43,21 +43,23 @@ class TraceCopy {
 
   std::uint64_t bytes_written() const { return output_->bytes_written(); }
   /// The parts of the source that could not be read and are not in the copy.
-  mcap::DamageList damages() const { return reader_.damages(); }
+  mcap::DamageList damages() const;
 
  private:
-  Definitions with_added(Definitions definitions, std::span<const AddedChannel> added);
+  void choose_ids(const Definitions& definitions);
   void take(const mcap::StreamRecord& record);
+  void take_message(const mcap::StreamRecord& record);
   void take_definition(mcap::Schema schema);
   void take_definition(mcap::Channel channel);
-  [[noreturn]] void refuse_late(std::string_view kind, std::uint16_t id) const;
+  [[noreturn]] void refuse(std::string_view what, std::uint16_t id, std::string_view cause) const;
 
   const mcap::ByteSource& source_;
   mcap::StreamReader reader_;
-  std::set<std::string> topics_;            ///< of the added channels
-  std::vector<std::uint16_t> channels_;     ///< ids of the added channels
-  std::set<std::uint16_t> schemas_;         ///< ids of the added schemas
-  std::set<std::uint16_t> replaced_;        ///< ids of the source's channels on these topics
+  std::vector<AddedChannel> added_;         ///< with their ids
+  std::set<std::uint16_t> shared_schemas_;  ///< ids of the added schemas that the source has, too
+  std::set<std::uint16_t> replaced_;        ///< ids of the source's channels on topics of added ones
+  std::set<std::uint16_t> undefined_;       ///< ids of channels that messages have and nothing defines
+  mcap::DamageList damages_;                ///< beside those of the reader
   std::optional<McapOutput> output_;        ///< always there after construction
   std::optional<mcap::StreamRecord> head_;  ///< read, but not copied yet
 };

@@ -83,4 +83,11 @@ void McapOutput::end_full_chunk() {
   if (writer_.open_chunk_bytes() >= kFullChunkBytes) end_chunk();
 }
 
+mcap::Damage undefined_channel(std::uint64_t offset, std::uint16_t channel_id) {
+  return {
+      offset, 0,
+      fmt::format("a Message of channel {}, which is not defined; from here on, messages of this channel are left out",
+                  channel_id)};
+}
+
 }  // namespace vestige

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "traces/mcap/record_walker.hpp"
 #include "traces/mcap/writer.hpp"
 #include "traces/trace_file/definitions.hpp"
 #include "traces/trace_file/message_stream.hpp"
@@ -12,7 +13,7 @@
 namespace vestige {
 
 /// Writes a new file from the records of another one. Definitions go outside chunks, each once and before its first
-/// use. Chunks are as large as in the original, but 16 MiB at most.
+/// use. Chunks end where the caller says, and after 16 MiB at the latest.
 class McapOutput {
  public:
   /// `profile` goes into the new file's header. Schemas and channels of `definitions` are known from the beginning.
@@ -27,7 +28,7 @@ class McapOutput {
   void add(mcap::Schema schema);
   void add(mcap::Channel channel);
 
-  /// Writes a message. Returns false and writes nothing if its channel is unknown.
+  /// Writes a message. Returns false and writes nothing if its channel is unknown: see `undefined_channel`.
   bool write(const mcap::Message& message);
   void write(const mcap::Attachment& attachment) { writer_.write(attachment); }
   void write(const mcap::Metadata& metadata) { writer_.write(metadata); }
@@ -57,5 +58,8 @@ class McapOutput {
   std::set<std::uint16_t> schemas_lacking_;  ///< ids of missing schemas whose channels were written without them
   bool chunk_ended_ = false;
 };
+
+/// The damage that messages of a channel which nothing defines are.
+mcap::Damage undefined_channel(std::uint64_t offset, std::uint16_t channel_id);
 
 }  // namespace vestige

@@ -8,9 +8,9 @@
 
 #include <map>
 
+#include "tests/support/message_of.hpp"
 #include "tests/traces/mcap/mcap_files.hpp"
 #include "tests/traces/trace_file/small_trace.hpp"
-#include "traces/base/error.hpp"
 #include "traces/repair/trace_check.hpp"
 
 namespace vestige {
@@ -18,7 +18,10 @@ namespace {
 
 using test::kFrames;
 using test::small_trace;
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Ne;
 using ::testing::SizeIs;
 
 using Bytes = std::vector<std::byte>;
@@ -101,21 +104,60 @@ TEST(TraceCopy, ReplacesWhatTheTraceHasOnTheSameTopic) {
   EXPECT_THAT(definitions.channels, SizeIs(gather_definitions(mcap::MemorySource(once)).channels.size()));
 }
 
-TEST(TraceCopy, RefusesDefinitionsThatItCouldNotForesee) {
+TEST(TraceCopy, LeavesOutChannelsWithoutMessages) {
+  const test::TemporaryFolder folder;
+  const Bytes trace = small_trace(folder, Compression::kZstd).bytes;
+  const Bytes once = copy_of(trace, {channel("/one")});
+  const mcap::MemorySource source(once);
+  Bytes written;
+  TraceCopy copy(source, test::into(written), std::vector<AddedChannel>{channel("/one"), channel("/two")});
+  copy.finish();
+  for (const auto& [id, one] : gather_definitions(mcap::MemorySource(written)).channels)
+    EXPECT_THAT(one.topic, AllOf(Ne("/one"), Ne("/two")));
+  EXPECT_EQ(test::content_sha256(written), test::content_sha256(trace));
+}
+
+TEST(TraceCopy, NotesMessagesOfChannelsThatNothingDefines) {
   mcap::ByteBuffer records;
-  append_record(records,
-                mcap::Channel{.id = 65535, .schema_id = 0, .topic = "/late", .message_encoding = "", .metadata = {}});
+  append_record(records, mcap::Channel{.id = 1, .schema_id = 0, .topic = "/a", .message_encoding = "", .metadata = {}});
+  for (const std::uint16_t id : std::vector<std::uint16_t>{1, 9, 9})
+    append_record(records, mcap::Message{.channel_id = id, .data = {}});
   const mcap::ByteBuffer bytes = test::file_of_chunk(records, 0);
   const mcap::MemorySource source(bytes);
   Bytes written;
-  const std::vector<AddedChannel> added = {channel("/one")};
-  TraceCopy copy(source, test::into(written), added);
-  try {
-    copy.finish();
-    ADD_FAILURE() << "the channel took the messages of another";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("channel 65535 is defined inside a chunk only"));
-  }
+  TraceCopy copy(source, test::into(written), std::vector<AddedChannel>{channel("/one")});
+  copy.finish();
+  const mcap::DamageList damages = copy.damages();
+  std::vector<std::string> faults;
+  for (const mcap::Damage& damage : damages.kept()) faults.push_back(damage.what);
+  EXPECT_THAT(faults, Contains(HasSubstr("a Message of channel 9, which is not defined")).Times(1));
+  EXPECT_THAT(messages_of(written), SizeIs(1));
+}
+
+/// Why a trace of these bytes gets no copy with a channel /one.
+std::string refusal_of(const Bytes& bytes) {
+  const mcap::MemorySource source(bytes);
+  Bytes written;
+  TraceCopy copy(source, test::into(written), std::vector<AddedChannel>{channel("/one")});
+  return test::message_of([&] { copy.finish(); });
+}
+
+TEST(TraceCopy, RefusesDefinitionsThatItCouldNotForesee) {
+  mcap::ByteBuffer late;
+  append_record(late,
+                mcap::Channel{.id = 65535, .schema_id = 0, .topic = "/late", .message_encoding = "", .metadata = {}});
+  EXPECT_THAT(refusal_of(test::file_of_chunk(late, 0)), HasSubstr("channel 65535 is defined inside a chunk only"));
+  mcap::Schema schema = channel("/one").schema;
+  schema.id = 5;
+  mcap::ByteBuffer twice;
+  mcap::append_magic(twice);
+  append_record(twice, mcap::Header{});
+  append_record(twice, schema);
+  mcap::ByteBuffer other;
+  schema.name = "Other";
+  append_record(other, schema);
+  append_record(twice, mcap::Chunk{.uncompressed_size = other.size(), .compression = "", .records = other});
+  EXPECT_THAT(refusal_of(twice), HasSubstr("schema 5 is defined twice, differently"));
 }
 
 }  // namespace
