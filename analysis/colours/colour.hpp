@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace vestige::plot {
 
@@ -11,5 +12,8 @@ struct Colour {
   std::uint8_t blue = 0;
   std::uint8_t alpha = 255;
 };
+
+/// "#rrggbb", as in CSS; without the opacity.
+std::string css(Colour colour);
 
 }  // namespace vestige::plot

@@ -13,10 +13,6 @@ namespace vestige {
 
 namespace {
 
-std::string css(plot::Colour colour) {
-  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
-}
-
 /// Rounded up, so that the page promises no more than is true.
 double tenths_up(double value) {
   return std::ceil(value * 10) / 10;
@@ -48,7 +44,8 @@ void add_mesh(PageArrays& arrays, const std::string& prefix, const Avatar& avata
 nlohmann::ordered_json actuators_of(const ActuatorMap& map) {
   nlohmann::ordered_json actuators = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < map.actuator_count; ++i)
-    actuators.push_back({{"name", map.names[i]}, {"colour", css(plot::region_colour(i + 1, map.actuator_count))}});
+    actuators.push_back(
+        {{"name", map.names[i]}, {"colour", plot::css(plot::region_colour(i + 1, map.actuator_count))}});
   return actuators;
 }
 
@@ -145,7 +142,7 @@ nlohmann::ordered_json PagePacker::finish_person(const Person& person, const std
           {"body", person.who.body},
           {"side", person.who.side},
           {"actuators", actuators_of(map)},
-          {"unmapped", css(plot::region_colour(0, map.actuator_count))},
+          {"unmapped", plot::css(plot::region_colour(0, map.actuator_count))},
           {"map", {{"width", map.width}, {"height", map.height}, {"by_triangle", map.triangle_count > 0}}}};
 }
 

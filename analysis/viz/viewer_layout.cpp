@@ -20,6 +20,13 @@ constexpr const char* kScenePanel = "3D!vestige";
 constexpr const char* kDutyPanel = "Plot!vestige";
 constexpr const char* kContactPanel = "RawMessages!vestige";
 
+/// Foxglove and Lichtblick have keys of their own for the title.
+ordered_json titled(const char* title, ordered_json panel) {
+  panel["foxglovePanelTitle"] = title;
+  panel["lichtblickPanelTitle"] = title;
+  return panel;
+}
+
 /// The axes of all frames are hidden: they would cover the body.
 ordered_json hidden_frames(std::span<const MappedPerson> people) {
   ordered_json frames;
@@ -55,8 +62,7 @@ ordered_json scene_panel(std::span<const MappedPerson> people) {
   ordered_json topics;
   for (const char* topic : {viz_format::kMeshTopic, viz_format::kContactsTopic, viz_format::kSceneTopic})
     topics[topic] = {{"visible", true}};
-  return {{"foxglovePanelTitle", "Body"},
-          {"cameraState",
+  return {{"cameraState",
            {{"perspective", true},
             {"distance", 4},
             {"phi", 75},
@@ -85,27 +91,20 @@ ordered_json duty_panel(std::span<const MappedPerson> people) {
       const plot::Colour colour = plot::region_colour(actuator, person.map.actuator_count);
       paths.push_back({{"value", fmt::format("{}.actuators[{}].duty", viz_format::kActuatorsTopic, paths.size())},
                        {"label", names[paths.size()]},
-                       {"color", fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue)},
+                       {"color", plot::css(colour)},
                        {"enabled", true},
                        {"timestampMethod", "receiveTime"}});
     }
-  return {{"foxglovePanelTitle", "Duties"},
-          {"paths", std::move(paths)},
-          {"minYValue", 0},
-          {"maxYValue", 255},
-          {"showXAxisLabels", true},
-          {"showYAxisLabels", true},
-          {"showLegend", true},
-          {"legendDisplay", "left"},
-          {"showPlotValuesInLegend", true},
-          {"isSynced", true},
-          {"xAxisVal", "timestamp"},
+  return {{"paths", std::move(paths)}, {"minYValue", 0},
+          {"maxYValue", 255},          {"showXAxisLabels", true},
+          {"showYAxisLabels", true},   {"showLegend", true},
+          {"legendDisplay", "left"},   {"showPlotValuesInLegend", true},
+          {"isSynced", true},          {"xAxisVal", "timestamp"},
           {"sidebarDimension", 160}};
 }
 
 ordered_json contact_panel() {
-  return {{"foxglovePanelTitle", "Contacts"},
-          {"topicPath", viz_format::kContactsTopic},
+  return {{"topicPath", viz_format::kContactsTopic},
           {"diffEnabled", false},
           {"diffMethod", "custom"},
           {"diffTopicPath", ""},
@@ -119,7 +118,9 @@ std::string viewer_layout(std::span<const MappedPerson> people) {
       {"direction", "column"}, {"first", kDutyPanel}, {"second", kContactPanel}, {"splitPercentage", 60}};
   const ordered_json layout = {
       {"configById",
-       {{kScenePanel, scene_panel(people)}, {kDutyPanel, duty_panel(people)}, {kContactPanel, contact_panel()}}},
+       {{kScenePanel, titled("Body", scene_panel(people))},
+        {kDutyPanel, titled("Duties", duty_panel(people))},
+        {kContactPanel, titled("Contacts", contact_panel())}}},
       {"globalVariables", ordered_json::object()},
       {"userNodes", ordered_json::object()},
       {"playbackConfig", {{"speed", 1}}},
