@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "analysis/base/provenance.hpp"
 #include "cli/files/export_formats.hpp"
@@ -12,12 +14,18 @@
 
 namespace vestige::cli {
 
-void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Verbosity verbosity) {
+void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Verbosity verbosity,
+                    std::span<const std::string> told) {
   constexpr std::size_t kMostTold = 20;
-  const std::size_t told = std::min(damages.kept().size(), kMostTold);
-  for (std::size_t i = 0; i < told; ++i) warn(vestige::describe(damages.kept()[i], file), verbosity);
-  if (damages.count() > told) warn(fmt::format("{}: and {} more", file, damages.count() - told), verbosity);
-  if (!damages.empty()) warn(fmt::format("{}: 'vestige recover' may keep more of the file", file), verbosity);
+  std::vector<std::string> news;
+  for (const mcap::Damage& damage : damages.kept())
+    if (std::string text = vestige::describe(damage, file); std::ranges::find(told, text) == told.end())
+      news.push_back(std::move(text));
+  const std::uint64_t more = damages.count() - damages.kept().size() + news.size() - std::min(news.size(), kMostTold);
+  news.resize(std::min(news.size(), kMostTold));
+  if (more > 0) news.push_back(fmt::format("{}: and {} more", file, more));
+  if (!news.empty()) news.push_back(fmt::format("{}: 'vestige recover' may keep more of the file", file));
+  for (const std::string& one : news) warn(one, verbosity);
 }
 
 void run_rewrite(const std::string& file, const std::string& output, const RewriteOptions& how,

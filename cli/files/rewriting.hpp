@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "cli/options.hpp"
@@ -8,8 +9,10 @@
 
 namespace vestige::cli {
 
-/// Warns of the parts of `file` that could not be read and are missing from the result.
-void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Verbosity verbosity);
+/// Warns of the parts of `file` that could not be read and are missing from the result, but not again of those in
+/// `told`.
+void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Verbosity verbosity,
+                    std::span<const std::string> told = {});
 
 /// Rewrites `file` as `output`, completely or not at all, and prints a summary. `doing` is the label of the progress
 /// bar.

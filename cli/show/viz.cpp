@@ -45,7 +45,7 @@ void add_all(OpenTrace& trace, SeenRun& run, VizTrace& copy, const VizOptions& o
   while (trace.reader.next(frame)) {
     run.step(frame);
     copy.write(frame, run.seen());
-    if (!progress.update(++done / total)) throw Error(options.trace, "the work was stopped; nothing was written", "");
+    if (!progress.update(++done / total)) throw Error(options.output, "adding was stopped", "");
   }
   copy.finish();
 }
@@ -80,7 +80,6 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
   if (layout) layout->commit();
 
   const mcap::DamageList damages = copy.damages();
-  if (trace.reader.complete()) warn_of_damage(options.trace, damages, verbosity);
   print_summary(
       fmt::format("{}: {} and {}, {} bytes ({} before)\n", options.output, counted(trace.reader.frame_count(), "frame"),
                   counted(copy.contacts(), "contact"), copy.bytes_written(), source.size()),
@@ -98,6 +97,7 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
                                                {"complete", trace.reader.complete() && damages.empty()}}),
              options.common);
   invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
+  warn_of_damage(options.trace, damages, verbosity, damage_of(trace.reader, options.trace));
   if (!damages.empty()) invocation.exit_code = kDataLost;
   for (const std::string& note : notes_of(run, trace)) {
     warn(fmt::format("{}: {}", options.trace, note), verbosity);

@@ -22,7 +22,9 @@ namespace vestige {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::UnorderedElementsAre;
 
 glm::dvec3 vector_of(const json& v) {
@@ -128,6 +130,9 @@ TEST_F(Viz, SaysTheDutyOfEachActuatorWheneverOneChanges) {
   ASSERT_EQ(run("vestige replay man.mcap --law speed --hold 40 --timeline timeline.csv").exit_code, 0);
   const json all = seen();
   EXPECT_FALSE(all.contains("/viz/mesh"));
+  EXPECT_THAT(text_of("vestige inspect seen.mcap --json -"),
+              AllOf(HasSubstr("/viz/actuators"), Not(HasSubstr("/viz/mesh"))))
+      << "a channel without messages";
   const json& duties = all["/viz/actuators"];
   EXPECT_EQ(duties["schema"], "vestige.viz.Actuators");
   std::vector<std::string> names;
@@ -183,6 +188,11 @@ TEST_F(Viz, ShowsThePosedSkinInTheColoursOfTheRegions) {
   }
 }
 
+TEST_F(Viz, ShowsTheSkinOnceAtATinyRate) {
+  record("--count 1 --rate 60 --duration 0.5", "--mesh-rate 1e-11");
+  EXPECT_EQ(seen()["/viz/mesh"]["messages"].size(), 1U);
+}
+
 TEST_F(Viz, KeepsTheTraceAndEveryVerbTakesIt) {
   record("--count 20 --rate 200 --duration 1 --viz");
   const std::string own = " | grep -v '\"topic\":\"/viz'";
@@ -219,6 +229,10 @@ TEST_F(Viz, TheLayoutNamesWhatIsInTheFile) {
   std::vector<std::string> panels;
   for (const auto& [panel, config] : layout["configById"].items()) panels.push_back(panel);
   EXPECT_THAT(panels, UnorderedElementsAre("3D!vestige", "Plot!vestige", "RawMessages!vestige"));
+  for (const auto& [panel, config] : layout["configById"].items()) {
+    EXPECT_TRUE(config.contains("foxglovePanelTitle")) << panel;
+    EXPECT_EQ(config["lichtblickPanelTitle"], config["foxglovePanelTitle"]) << panel;
+  }
   EXPECT_EQ(layout["layout"]["first"], "3D!vestige");
   EXPECT_EQ(layout["layout"]["second"]["first"], "Plot!vestige");
   EXPECT_EQ(layout["layout"]["second"]["second"], "RawMessages!vestige");
