@@ -92,11 +92,6 @@ bool knows_skip(const std::string& detector) {
   return detector == "cpu" || detector == "geometry" || detector == "compute" || detector == "decimated";
 }
 
-Method method_named(const std::string& name) {
-  if (name == "carried") return Method::kCarried;
-  return name == "ccd" ? Method::kCcd : Method::kStatic;
-}
-
 const std::vector<std::string>& detector_names() {
   static const std::vector<std::string> names = {"paper",  "geometry",       "compute", "cpu",      "exact",
                                                  "embree", "embree_default", "boxes",   "capsules", "decimated"};

@@ -10,12 +10,10 @@
 #include "cli/terminal.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
+#include "detector/method.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::cli {
-
-/// The values of --method.
-inline const std::vector<std::string> kMethodNames = {"static", "carried", "ccd"};
 
 /// What each method does, for the help of --method.
 inline constexpr const char* kMethodHelp =
@@ -25,9 +23,6 @@ inline constexpr const char* kMethodHelp =
 
 /// The help of --context, for a verb that runs in one context.
 inline constexpr const char* kContextHelp = "OpenGL context that paper, geometry and compute run in";
-
-/// Returns the method of this name; it must be one of `kMethodNames`.
-Method method_named(const std::string& name);
 
 /// The flags for the detector and the place where it runs.
 struct DetectorChoice {
