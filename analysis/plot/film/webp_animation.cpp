@@ -18,10 +18,14 @@ constexpr float kQuality = 75;
   throw Error("WebP", cause, "choose a smaller --width or a shorter time");
 }
 
+[[noreturn]] void fail_for_version() {
+  throw Error("WebP", "another version of libwebp is installed", "install libwebp7 and libwebpmux3 of Debian 12");
+}
+
 /// Frees a picture's pixels.
 struct Pixels {
   Pixels() {
-    if (WebPPictureInit(&picture) == 0) fail("another version of libwebp is installed");
+    if (WebPPictureInit(&picture) == 0) fail_for_version();
   }
   ~Pixels() { WebPPictureFree(&picture); }
   Pixels(const Pixels&) = delete;
@@ -48,8 +52,7 @@ struct WebpAnimation::Parts {
 
 WebpAnimation::WebpAnimation(std::size_t width, std::size_t height) : parts_(std::make_unique<Parts>()) {
   WebPAnimEncoderOptions options;
-  if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&parts_->config) == 0)
-    fail("another version of libwebp is installed");
+  if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&parts_->config) == 0) fail_for_version();
   options.allow_mixed = 1;
   // Every picture is whole. If only what has changed is encoded, slow changes, as of shadows, are left out block by
   // block.

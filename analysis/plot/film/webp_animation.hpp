@@ -11,7 +11,7 @@ namespace vestige::plot {
 /// Makes an animated WebP image (RFC 9649) that repeats for ever. Each picture is compressed when it comes, with or
 /// without loss, whichever is smaller; only compressed pictures are kept. The same pictures give the same bytes.
 ///
-/// Functions throw `Error` if libwebp fails, for want of memory.
+/// Functions throw `Error` if libwebp fails, for want of memory, or if it is of another version.
 class WebpAnimation {
  public:
   /// All pictures have this size, at most 16383 each.
