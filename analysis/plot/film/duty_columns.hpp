@@ -24,8 +24,8 @@ class DutyColumns {
  private:
   void hold_until(std::size_t column);
   void raise(std::size_t column);
-  /// Returns the column of a time; `columns_` behind the end, and 0 before the beginning.
-  std::size_t column_of(double time_s) const;
+  /// Returns the place of a time, in columns; `columns_` behind the end, and 0 before the beginning.
+  double place_of(double time_s) const;
 
   std::size_t columns_;
   double begin_s_;
