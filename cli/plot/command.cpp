@@ -23,6 +23,16 @@ void warn_of(const Options& options, const Subject& subject) {
   warn(options, subject.warnings);
 }
 
+std::vector<Subject> read_people(const Options& options, const TraceReader& trace) {
+  const std::filesystem::path& input = options.inputs.front();
+  if (trace.people().size() > 1 && !options.map.empty())
+    throw UsageError("--map", fmt::format("{} holds several people", input.string()), "leave --map out");
+  std::vector<Subject> people;
+  for (std::size_t i = 0; i < trace.people().size(); ++i)
+    warn_of(options, people.emplace_back(read_subject(trace, input, options.map, i)));
+  return people;
+}
+
 int report_damage(const Options& options, const TraceReader& trace) {
   if (trace.complete()) return cli::kDone;
   warn(options, damage_of(trace, options.inputs.front().string()));

@@ -61,6 +61,10 @@ void warn(const Options& options, const std::vector<std::string>& texts);
 /// Warns of all that is doubtful about a subject.
 void warn_of(const Options& options, const Subject& subject);
 
+/// Reads all people of a trace, the input, and warns of what is doubtful about them. Throws `UsageError` if --map is
+/// given for several.
+std::vector<Subject> read_people(const Options& options, const TraceReader& trace);
+
 /// Warns of what is wrong with the input, a trace that was read to its end. Returns its part of the exit code.
 int report_damage(const Options& options, const TraceReader& trace);
 

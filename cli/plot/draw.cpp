@@ -244,16 +244,11 @@ int draw_scene(Options options) {
   int damage = cli::kDone;
   const int drawn = write_figure(options, stem_of(options), [&] {
     TraceReader trace(input, People::kSeveral);
-    if (trace.people().size() > 1 && !options.map.empty())
-      throw UsageError("--map", fmt::format("{} holds several people", input.string()), "leave --map out");
     Scene scene;
+    scene.subjects = read_people(options, trace);
     ContactLimits limits;
     limits.people.clear();
-    for (std::size_t i = 0; i < trace.people().size(); ++i) {
-      const Subject& subject = scene.subjects.emplace_back(read_subject(trace, input, options.map, i));
-      warn_of(options, subject);
-      limits.people.push_back(limits_of(options, subject));
-    }
+    for (const Subject& subject : scene.subjects) limits.people.push_back(limits_of(options, subject));
     scene.trail_s = options.moments.trail_s;
     scene.has_contacts = !options.contacts.empty();
     scene.colour_by = options.colour_by == "collider" ? ColourBy::kCollider : ColourBy::kKind;

@@ -2,20 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "analysis/plot/canvas/headless_window.hpp"
+#include "cli/options.hpp"
 #include "cli/plot/command.hpp"
 #include "cli/plot/draw.hpp"
 #include "cli/terminal.hpp"
+#include "detector/method.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
@@ -28,18 +28,17 @@ namespace {
 constexpr double kSlowest = 0.001;
 constexpr double kFastest = 1000;
 
-std::optional<double> number_in(std::string_view text) {
-  double value = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc() || end != text.data() + text.size()) return {};
-  return value;
+std::optional<double> number_in(const std::string& text) {
+  const std::vector<double> numbers = cli::parse_numbers(text);
+  if (numbers.size() != 1) return {};
+  return numbers.front();
 }
 
 /// A number, or a fraction.
 double parse_speed(const std::string& text) {
   const std::size_t bar = text.find('/');
-  const std::optional<double> above = number_in(std::string_view(text).substr(0, bar));
-  const std::optional<double> below = bar == std::string::npos ? 1 : number_in(std::string_view(text).substr(bar + 1));
+  const std::optional<double> above = number_in(text.substr(0, bar));
+  const std::optional<double> below = bar == std::string::npos ? 1 : number_in(text.substr(bar + 1));
   const double speed = above && below ? *above / *below : 0;
   if (speed >= kSlowest && speed <= kFastest) return speed;
   throw UsageError("--speed", fmt::format("'{}' is no speed", text),
@@ -61,31 +60,30 @@ std::filesystem::path output_of(const Options& options) {
 FilmOptions film_options(const Options& options) {
   FilmOptions film;
   film.span = {options.moments.from_s, options.moments.to_s, parse_speed(options.speed), options.film_rate_hz};
-  film.speed = options.speed;
+  require_order(film.span.from_s, film.span.to_s);
   static const std::map<std::string, double> sides = {{"front", 0}, {"left", 90}, {"back", 180}, {"right", -90}};
   if (const auto side = sides.find(options.view); side != sides.end()) film.azimuth_degrees = side->second;
   film.trail_s = options.film_trail_ms / 1000;
   film.width_dots = options.film_width;
   film.law = options.law;
   film.law.check();
-  if (options.method == "ccd") film.method = Method::kCcd;
-  if (options.method == "carried") film.method = Method::kCarried;
+  film.method = method_named(options.method);
   return film;
 }
 
-std::vector<Subject> read_people(const Options& options, TraceReader& trace) {
-  const std::filesystem::path& input = options.inputs.front();
-  if (trace.people().size() > 1 && !options.map.empty())
-    throw UsageError("--map", fmt::format("{} holds several people", input.string()), "leave --map out");
-  std::vector<Subject> people;
-  for (std::size_t i = 0; i < trace.people().size(); ++i)
-    warn_of(options, people.emplace_back(read_subject(trace, input, options.map, i)));
-  return people;
+/// Warns if there is no motor that contacts could drive. Otherwise throws `Error` if the law cannot be felt.
+void check_law(const Options& options, TraceReader& trace, const std::vector<Subject>& people) {
+  const bool anybody_feels =
+      std::ranges::any_of(people, [](const Subject& person) { return person.map.actuator_count != 0; });
+  if (anybody_feels)
+    require_spheres(std::span(&options.law.law, 1), trace.has_spheres(), options.inputs.front().string());
+  else
+    warn(options, "there is no actuator map, so no motor runs");
 }
 
 /// Nothing is returned if the user has stopped it.
-std::optional<Film> make_film(const Options& options, TraceReader& trace, const std::vector<Subject>& people,
-                              const std::filesystem::path& output) {
+std::optional<Film> film_of(const Options& options, TraceReader& trace, const std::vector<Subject>& people,
+                            const std::filesystem::path& output) {
   cli::Progress progress("film", options.quiet ? cli::Verbosity::kQuiet : cli::Verbosity::kNormal);
   try {
     return make_film(trace, people, film_options(options), options.inputs.front().string(),
@@ -105,15 +103,16 @@ int draw_film(const Options& options) {
   refuse_overwrite(output, overwrite_of(options));
   TraceReader trace(input, People::kSeveral);
   const std::vector<Subject> people = read_people(options, trace);
-  require_spheres(std::span(&options.law.law, 1), trace.has_spheres(), input);
+  check_law(options, trace, people);
   require_frames(trace, input);
   cli::catch_interrupts();
-  const std::optional<Film> film = make_film(options, trace, people, output);
+  const std::optional<Film> film = film_of(options, trace, people, output);
   if (!film) {
     warn(options, "stopped; nothing was written");
     return cli::kDataLost;
   }
   const int damage = report_damage(options, trace);
+  for (const std::string& note : film->notes) warn(options, fmt::format("{}: {}", input, note));
   OutputFile file(output, overwrite_of(options));
   file.write(film->webp);
   file.commit();
@@ -121,7 +120,7 @@ int draw_film(const Options& options) {
     print_message(fmt::format("wrote {}: {}, {:.3g} s, {}, {:.2g} MB\n", output.string(),
                               counted(film->pictures, "picture"), film->length_s, counted(film->contacts, "contact"),
                               static_cast<double>(film->webp.size()) / 1e6));
-  return damage;
+  return film->notes.empty() ? damage : cli::kDataLost;
 }
 
 }  // namespace vestige::plot

@@ -8,6 +8,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/plot/draw.hpp"
 #include "detector/actuators/intensity.hpp"
+#include "detector/method.hpp"
 
 namespace vestige::plot {
 
@@ -235,9 +236,10 @@ CLI::App& add_film(CLI::App& app, Options& options) {
                                "  vestige plot film man.mcap --from 0.1 --to 0.2 --speed 1/10 -o slow.webp\n");
   add_input(film, options, "MCAP", "The trace");
   add_span(film, options);
-  film.add_option("--speed", options.speed,
-                  "Seconds of the trace in a second of the film, a number or a fraction: 1/10 is ten times slower than "
-                  "life")
+  film.add_option(
+          "--speed", options.speed,
+          "Seconds of the trace in a second of the film, a number or a fraction from 0.001 to 1000: 1/10 is ten "
+          "times slower than life")
       ->capture_default_str()
       ->type_name("X");
   film.add_option("--fps", options.film_rate_hz,
@@ -254,7 +256,8 @@ CLI::App& add_film(CLI::App& app, Options& options) {
                   "right")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "front", "back", "left", "right"}));
-  film.add_option("--trail", options.film_trail_ms, "How far back paths and contacts are shown")
+  film.add_option("--trail", options.film_trail_ms,
+                  "How far back paths and contacts are shown; contacts for two pictures at least")
       ->capture_default_str()
       ->type_name("MS")
       ->check(help::between(0.001, 10000));
@@ -262,7 +265,7 @@ CLI::App& add_film(CLI::App& app, Options& options) {
   film.add_option("--method", options.method,
                   "How contacts are found: static, carried or ccd, as in 'vestige replay --help'")
       ->capture_default_str()
-      ->check(CLI::IsMember({"static", "carried", "ccd"}));
+      ->check(CLI::IsMember(kMethodNames));
   add_law(film, options);
   film.add_option("--actuator", options.law.actuator,
                   "A description of the motors in JSON: the duty for each amplitude, and a kick that starts them")

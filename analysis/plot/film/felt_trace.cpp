@@ -1,5 +1,7 @@
 #include "analysis/plot/film/felt_trace.hpp"
 
+#include <fmt/format.h>
+
 #include "analysis/plot/studio/subject_run.hpp"
 
 namespace vestige::plot {
@@ -27,6 +29,15 @@ bool FeltTrace::next() {
     if (seen.felt != nullptr) duty_.insert(duty_.end(), seen.felt->duty.begin(), seen.felt->duty.end());
   }
   return true;
+}
+
+std::vector<std::string> FeltTrace::notes() const {
+  std::vector<std::string> notes;
+  const auto& people = trace_.people();
+  for (std::size_t i = 0; i < people.size(); ++i)
+    if (const std::string note = run_.non_finite(i); !note.empty())
+      notes.push_back(people.size() > 1 ? fmt::format("person {}: {}", i + 1, note) : note);
+  return notes;
 }
 
 void FeltTrace::note_contacts(std::size_t person, const ContactRow& row) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "analysis/plot/studio/subject.hpp"
@@ -28,6 +29,8 @@ class FeltTrace {
   const std::vector<RecordedContact>& contacts() const { return contacts_; }
   /// Returns the duties of all actuators, 0 … 255: the first person's, then the second's, and so on.
   const std::vector<std::uint8_t>& duty() const { return duty_; }
+  /// Says what was not finite in the frames so far, and of which person, a sentence for each.
+  std::vector<std::string> notes() const;
 
  private:
   void note_contacts(std::size_t person, const ContactRow& row);

@@ -25,6 +25,8 @@ namespace {
 constexpr Colour kIdle = {238, 238, 238};  ///< of a motor in the timeline
 /// Lines and marks of the scene are this much larger than in printed figures, of which several stand on a page.
 constexpr double kScenePt = 1.5;
+/// What scenes that are painted at a time may hold in memory.
+constexpr double kMostSceneBytes = 2e9;
 
 Camera camera_of(const std::vector<Subject>& people, const FilmOptions& options) {
   const double azimuth_degrees =
@@ -35,12 +37,13 @@ Camera camera_of(const std::vector<Subject>& people, const FilmOptions& options)
 /// Returns nothing if `go_on` returned false.
 std::optional<Raster> draw_duties(FeltTrace& felt, const FilmPlan& plan, const FilmLayout& layout,
                                   const std::vector<FilmLine>& lines, const std::function<bool()>& go_on) {
-  if (lines.empty()) return Raster(layout.timeline_width_dots(), layout.timeline_height_dots(), kIdle);
+  if (lines.empty()) return Raster(1, 1, kIdle);
   DutyColumns columns(lines.size(), layout.timeline_width_dots(), plan.begin_s, plan.end_s);
   felt.rewind();
-  while (felt.next() && felt.frame().time_s() < plan.end_s) {
+  while (felt.next()) {
     if (!go_on()) return {};
     columns.add(felt.frame().time_s(), felt.duty());
+    if (felt.frame().index == plan.last_frame) break;
   }
   columns.finish();
   return duty_raster(columns.highest(), layout.timeline_width_dots(), layout.timeline_height_dots(),
@@ -49,17 +52,47 @@ std::optional<Raster> draw_duties(FeltTrace& felt, const FilmPlan& plan, const F
                      });
 }
 
+/// How long contacts are shown. Two pictures at least: then one that came right after the picture before is still half
+/// to be seen.
+double fade_of(const FilmOptions& options) {
+  return std::max(options.trail_s, 2 * options.span.speed / options.span.rate_hz);
+}
+
+/// The memory that painting a scene takes: there are 9 samples in a dot.
+double scene_bytes(const FilmLayout& layout) {
+  return 40.0 * 9 * static_cast<double>(layout.width_dots()) * static_cast<double>(layout.body_height_dots());
+}
+
+/// Returns how many scenes are painted at a time.
+std::size_t scenes_at_a_time(const FilmLayout& layout) {
+  const auto fitting = static_cast<std::size_t>(kMostSceneBytes / scene_bytes(layout));
+  return std::max<std::size_t>(1, std::min<std::size_t>(std::thread::hardware_concurrency(), fitting));
+}
+
+FilmSheet sheet_of(const std::vector<Subject>& people, const FilmPlan& plan, const FilmOptions& options) {
+  FilmSheet sheet;
+  sheet.title = people.front().title;
+  sheet.speed = options.span.speed;
+  sheet.step_s = options.span.speed / options.span.rate_hz;
+  sheet.fade_s = fade_of(options);
+  sheet.follows = plan.sight.follows;
+  sheet.lines = film_lines(people);
+  sheet.begin_s = plan.begin_s;
+  sheet.end_s = plan.end_s;
+  return sheet;
+}
+
 /// What is gathered between one picture and the next.
 class Moments {
  public:
   Moments(const FilmOptions& options, std::size_t duties)
-      : trail_s_(options.trail_s), trails_(options.trail_s), duty_(duties) {}
+      : fade_s_(fade_of(options)), trails_(options.trail_s), duty_(duties) {}
 
   void add(const FeltTrace& felt) {
     const double time_s = felt.frame().time_s();
     trails_.add(felt.frame());
     contacts_.insert(contacts_.end(), felt.contacts().begin(), felt.contacts().end());
-    while (!contacts_.empty() && time_s - contacts_.front().time_s > trail_s_) contacts_.pop_front();
+    while (!contacts_.empty() && time_s - contacts_.front().time_s > fade_s_) contacts_.pop_front();
     for (std::size_t i = 0; i < duty_.size(); ++i) duty_[i] = std::max(duty_[i], felt.duty()[i]);
   }
 
@@ -72,7 +105,7 @@ class Moments {
   std::vector<std::uint8_t> take_duty() { return std::exchange(duty_, std::vector<std::uint8_t>(duty_.size())); }
 
  private:
-  double trail_s_;
+  double fade_s_;
   Trails trails_;
   std::deque<RecordedContact> contacts_;
   std::vector<std::uint8_t> duty_;
@@ -85,6 +118,7 @@ class ScenePainter {
                const FilmOptions& options)
       : people_(people), plan_(plan), layout_(layout), poser_(people) {
     style_.trail_s = options.trail_s;
+    style_.fade_s = fade_of(options);
     style_.marks = ContactMarks::kFading;
     style_.borders = Borders::kRegions;  // two motors that run have the same colour
     style_.dots_per_pt = kScenePt * layout.dots_per_pt();
@@ -125,8 +159,10 @@ class ScenePainter {
 /// Draws pictures and adds them to the animation in their order. Scenes of several pictures are painted at a time.
 class PictureLine {
  public:
-  PictureLine(const ScenePainter& painter, FilmFigure& figure, FigureScreen& screen, WebpAnimation& animation)
-      : painter_(painter), figure_(figure), screen_(screen), animation_(animation) {}
+  /// `most`: so many scenes at a time.
+  PictureLine(const ScenePainter& painter, std::size_t most, FilmFigure& figure, FigureScreen& screen,
+              WebpAnimation& animation)
+      : painter_(painter), most_(most), figure_(figure), screen_(screen), animation_(animation) {}
 
   void add(int time_ms, Moment moment, std::vector<std::uint8_t> duty) {
     if (waiting_.size() >= most_) finish_one();
@@ -154,10 +190,10 @@ class PictureLine {
   }
 
   const ScenePainter& painter_;
+  std::size_t most_;
   FilmFigure& figure_;
   FigureScreen& screen_;
   WebpAnimation& animation_;
-  std::size_t most_ = std::max(1U, std::thread::hardware_concurrency());
   std::deque<Waiting> waiting_;
 };
 
@@ -174,8 +210,7 @@ std::optional<Film> make_film(TraceReader& trace, const std::vector<Subject>& pe
   const auto go_on = [&] { return progress(0); };
   const std::optional<FilmPlan> plan = plan_film(trace, people, options.span, camera_of(people, options), name, go_on);
   if (!plan) return {};
-  const FilmSheet sheet = {people.front().title, options.speed, options.trail_s,
-                           film_lines(people),   plan->begin_s, plan->end_s};
+  const FilmSheet sheet = sheet_of(people, *plan, options);
   const FilmLayout layout(options.width_dots, plan->sight, sheet.lines);
   std::optional<Raster> duties = draw_duties(felt, *plan, layout, sheet.lines, go_on);
   if (!duties) return {};
@@ -184,10 +219,11 @@ std::optional<Film> make_film(TraceReader& trace, const std::vector<Subject>& pe
   Moments moments(options, painter.duties());
   FilmClock clock(options.span);
   WebpAnimation animation(layout.width_dots(), layout.height_dots());
-  PictureLine line(painter, figure, screen, animation);
+  PictureLine line(painter, scenes_at_a_time(layout), figure, screen, animation);
   Film film;
   felt.rewind();
-  while (film.pictures < plan->pictures && felt.next()) {
+  while (felt.next()) {
+    if (!progress(static_cast<double>(film.pictures) / static_cast<double>(plan->pictures))) return {};
     const TraceFrame& frame = felt.frame();
     moments.add(felt);
     if (frame.time_s() < plan->begin_s) {
@@ -195,13 +231,17 @@ std::optional<Film> make_film(TraceReader& trace, const std::vector<Subject>& pe
       continue;
     }
     film.contacts += felt.contacts().size();
-    const std::optional<std::uint64_t> period = clock.period_of(frame.time_s());
-    if (!period) continue;
-    line.add(milliseconds_of(*period, options.span), moments.moment_of(frame), moments.take_duty());
-    ++film.pictures;
-    if (!progress(static_cast<double>(film.pictures) / static_cast<double>(plan->pictures))) return {};
+    const bool is_last = frame.index == plan->last_frame;
+    std::optional<std::uint64_t> period = clock.period_of(frame.time_s());
+    if (!period && is_last) period = clock.last_period();
+    if (period) {
+      line.add(milliseconds_of(*period, options.span), moments.moment_of(frame), moments.take_duty());
+      ++film.pictures;
+    }
+    if (is_last) break;
   }
   line.finish();
+  film.notes = felt.notes();
   film.length_s = static_cast<double>(plan->periods) / options.span.rate_hz;
   film.webp = animation.finish(milliseconds_of(plan->periods, options.span));
   return film;

@@ -17,9 +17,8 @@ namespace vestige::plot {
 
 struct FilmOptions {
   FilmSpan span;
-  std::string speed = "1";                ///< the span's speed as it is written on the pictures
   std::optional<double> azimuth_degrees;  ///< as in `Camera::from`; empty: the side of `plot scene`
-  double trail_s = 0.15;                  ///< how far back paths and contacts are shown, above 0
+  double trail_s = 0.15;                  ///< how far back paths and contacts are shown, at least; above 0
   std::size_t width_dots = 640;           ///< at least 320
   LawFlags law;
   Method method = Method::kStatic;
@@ -30,12 +29,14 @@ struct Film {
   std::size_t pictures = 0;
   std::size_t contacts = 0;  ///< in the frames from the first picture to the last
   double length_s = 0;
+  std::vector<std::string> notes;  ///< what was not finite, a sentence for each person
 };
 
 /// Draws a trace as an animated picture: its people with the regions of their maps, motors that light up with their
 /// duty, colliders with their paths, contacts that fade, and the timeline of the duties. A picture shows the contacts
 /// and the highest duties since the picture before, so that nothing between two pictures is lost. Holds the
-/// compressed pictures in memory, and one picture for each processor.
+/// compressed pictures in memory, and the scenes that are painted at a time: one for each processor, but of more than
+/// one at most 2 GB.
 ///
 /// `progress` receives the share done and returns false to stop; then nothing is returned. Throws `GlUnavailable` if
 /// there is no OpenGL context, and `Error` or `UsageError` as `plan_film` and `FeltTrace` do. `name` is the trace's.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "analysis/colours/palette.hpp"
@@ -36,11 +37,24 @@ constexpr TextStyle kTitleStyle = {9, kInk, Anchor::kLeft, Level::kMiddle, Weigh
 constexpr TextStyle kSmallStyle = {.size_pt = kTickTypePt, .colour = kSmallPrint};
 
 double timeline_pt(std::size_t lines) {
+  if (lines == 0) return 0;
   return std::clamp(static_cast<double>(lines) * kLinePt, kLeastTimelinePt, kMostTimelinePt);
 }
 
 bool has_labels(std::size_t lines) {
   return lines > 0 && timeline_pt(lines) / static_cast<double>(lines) >= kLeastLabelledPt;
+}
+
+/// Returns how many digits tell the times of two pictures apart; milliseconds at least.
+int digits_of(double step_s) {
+  return std::clamp(static_cast<int>(std::ceil(-std::log10(step_s))), 3, 9);
+}
+
+/// What must be said beside the title, or "".
+std::string small_print(const FilmSheet& sheet) {
+  std::string text = sheet.speed == 1 ? "" : fmt::format("{:.3g} × real time", sheet.speed);
+  if (sheet.follows) text += text.empty() ? "the view follows" : ", the view follows";
+  return text;
 }
 
 /// Room for the labels of the lines on their left.
@@ -119,17 +133,16 @@ void FilmFigure::draw_title(Canvas& canvas) const {
   const double y_pt = height_pt() - kTitleRoomPt / 2;
   TextStyle time_style = kTitleStyle;
   time_style.anchor = Anchor::kRight;
-  canvas.text({kWidthPt - kSidePt, y_pt}, fmt::format("{:.3f} s", time_s_), time_style);
+  canvas.text({kWidthPt - kSidePt, y_pt}, fmt::format("{:.{}f} s", time_s_, digits_of(sheet_.step_s)), time_style);
   const std::string title = shortened(sheet_.title, kTitleStyle, kWidthPt / 2);
   canvas.text({kSidePt, y_pt}, title, kTitleStyle);
-  if (sheet_.speed != "1")
-    canvas.text({kSidePt + text_width_pt(title, kTitleStyle) + 8, y_pt}, fmt::format("{} × real time", sheet_.speed),
-                kSmallStyle);
+  const std::string beside = small_print(sheet_);
+  if (!beside.empty()) canvas.text({kSidePt + text_width_pt(title, kTitleStyle) + 8, y_pt}, beside, kSmallStyle);
 }
 
 void FilmFigure::draw_timeline(Canvas& canvas) const {
   const Box plot = layout_.timeline();
-  canvas.image(plot, duties_);
+  if (!sheet_.lines.empty()) canvas.image(plot, duties_);
   if (has_labels(sheet_.lines.size())) draw_labels(canvas, plot);
   // A clock's time is long and says little: count from the film's start then.
   const bool is_clock = std::abs(sheet_.begin_s) > 10 * (sheet_.end_s - sheet_.begin_s);
@@ -169,7 +182,7 @@ void FilmFigure::draw_key(Canvas& canvas) const {
   }
   canvas.mark({left_pt + 2, y_pt}, Mark::kCircle, kContactPt, kVermillion, kVermillion);
   left_pt += 4;
-  say(fmt::format("contact in these {:g} ms", sheet_.trail_s * 1000));
+  say(fmt::format("contact in these {:g} ms", sheet_.fade_s * 1000));
   canvas.line({left_pt, y_pt}, {left_pt + 10, y_pt}, {blend(kWhite, kBlue, 0.6), 0.9, Dash::kSolid});
   canvas.mark({left_pt + 10, y_pt}, Mark::kCircle, 2.2, kInk, kInk);
   left_pt += 12;

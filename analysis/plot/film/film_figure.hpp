@@ -24,8 +24,10 @@ std::vector<FilmLine> film_lines(const std::vector<Subject>& people);
 /// What all pictures of a film have in common.
 struct FilmSheet {
   std::string title;
-  std::string speed;   ///< as asked for: "1/10"; "1" is not shown
-  double trail_s = 0;  ///< for the key
+  double speed = 1;      ///< 1 is not shown
+  double step_s = 0.04;  ///< from a picture to the next, in the trace's time
+  double fade_s = 0;     ///< how long contacts are shown, for the key
+  bool follows = false;  ///< the camera goes along with the people
   std::vector<FilmLine> lines;
   double begin_s = 0;  ///< of the timeline
   double end_s = 1;    ///< later
@@ -50,7 +52,7 @@ class FilmLayout {
   double width_pt() const { return pt_of(width_dots_); }
   double height_pt() const;
   Box body() const;
-  /// Of no height if there is no actuator.
+  /// Of no height if there is no actuator: then only the axis is drawn.
   Box timeline() const;
 
  private:
@@ -69,7 +71,7 @@ class FilmLayout {
 /// A picture of a film: the scene, the time, and below it the timeline of the duties with a cursor.
 class FilmFigure : public Figure {
  public:
-  /// `duties` is the timeline as `duty_raster` draws it, of the layout's size.
+  /// `duties` is the timeline as `duty_raster` draws it, of the layout's size. It is not drawn if there is no actuator.
   FilmFigure(FilmSheet sheet, const FilmLayout& layout, Raster duties);
 
   /// Sets what the next picture shows: the scene, the layout's size, and the duty of each line.

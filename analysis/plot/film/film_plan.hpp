@@ -27,7 +27,7 @@ struct FilmSpan {
 };
 
 /// Says which frames of a trace become pictures. In each period of the film, the first frame that lies in it does. If
-/// none does, the picture before stays.
+/// none does, the picture before stays. The span's last frame is shown, too, so that nothing is lost behind it.
 class FilmClock {
  public:
   explicit FilmClock(const FilmSpan& span) : span_(span) {}
@@ -35,11 +35,20 @@ class FilmClock {
   /// Takes the frames in their order. Returns the number of the period that shows this frame, from 0 on; nothing if the
   /// frame is not shown.
   std::optional<std::uint64_t> period_of(double time_s);
+  /// Returns the period that shows the span's last frame, if `period_of` has not shown it: that after the last picture.
+  std::uint64_t last_period();
+
+  /// Returns the film's length in periods if no more pictures come. The last one is shown for the shortest time that
+  /// another is; one alone, for a period.
+  std::uint64_t periods() const;
 
  private:
+  std::uint64_t show_in(std::uint64_t period);
+
   FilmSpan span_;
   std::optional<double> first_s_;
-  std::uint64_t next_ = 0;
+  std::uint64_t next_ = 0;                     ///< the period after that of the last picture
+  std::optional<std::uint64_t> shortest_gap_;  ///< from a picture to the next
 };
 
 /// What must be known of a film before its first picture is drawn.
@@ -47,6 +56,7 @@ struct FilmPlan {
   SceneSight sight;
   glm::dvec3 origin_m = glm::dvec3(0);  ///< in the world: where people are posed
   std::size_t pictures = 0;             ///< at least 1
+  std::uint64_t last_frame = 0;         ///< of the span: the last picture
   double begin_s = 0;                   ///< of the first frame shown
   double end_s = 0;                     ///< when the last picture ends; later than `begin_s`
   std::uint64_t periods = 0;            ///< the film's length

@@ -70,7 +70,7 @@ class Layers {
       contacts.dot(at, dot, 1, 0.35, tolerance);
       return;
     }
-    const double opacity = std::clamp(1 - age_s / style_.trail_s, 0.0, 1.0);
+    const double opacity = std::clamp(1 - age_s / style_.fade_s, 0.0, 1.0);
     rings.line({at, opacity}, {at, opacity}, 1.5 * dot, 0, tolerance);
     contacts.line({at, opacity}, {at, opacity}, dot, 0.35, tolerance);
   }

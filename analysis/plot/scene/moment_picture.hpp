@@ -21,7 +21,8 @@ enum class Borders { kNone, kRegions };
 
 /// How the moments of a scene are drawn.
 struct MomentStyle {
-  double trail_s = 0.1;  ///< after it paths, and contacts that fade, are gone
+  double trail_s = 0.1;  ///< after it paths are gone
+  double fade_s = 0.1;   ///< after it contacts that fade are gone
   ContactMarks marks = ContactMarks::kAlike;
   Borders borders = Borders::kNone;
   double dots_per_pt = kPrintDotsPerInch / 72;  ///< of the widths of lines and marks

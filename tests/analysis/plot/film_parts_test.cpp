@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
-#include <limits>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "analysis/plot/film/duty_columns.hpp"
@@ -42,6 +43,30 @@ TEST(FilmClock, BeginsWithTheFirstFrameOfTheSpan) {
             (std::vector<std::pair<int, int>>{{0, 31}, {1, 35}, {2, 39}}));
 }
 
+/// The length of a film of these frames, in periods of a second.
+std::uint64_t length_of(const std::vector<double>& times_s) {
+  FilmClock clock({.rate_hz = 1});
+  bool is_shown = true;
+  for (const double time_s : times_s) is_shown = clock.period_of(time_s).has_value();
+  if (!is_shown) clock.last_period();
+  return clock.periods();
+}
+
+TEST(FilmClock, TheLastFrameIsShownInAPeriodOfItsOwn) {
+  FilmClock clock({.rate_hz = 1});
+  EXPECT_EQ(clock.period_of(0), 0U);
+  EXPECT_EQ(clock.period_of(1), 1U);
+  EXPECT_FALSE(clock.period_of(1.9));
+  EXPECT_EQ(clock.last_period(), 2U);
+  EXPECT_EQ(clock.periods(), 3U);
+}
+
+TEST(FilmClock, TheLastPictureStaysForTheShortestTimeOfTheOthers) {
+  EXPECT_EQ(length_of({7}), 1U);
+  EXPECT_EQ(length_of({0, 3, 5, 100}), 102U) << "the gap before it is no time that it lasts";
+  EXPECT_EQ(length_of({0, 3, 5, 100, 100.5}), 102U);
+}
+
 class DutyColumnsTest : public ::testing::Test {
  protected:
   void add(double time_s, std::uint8_t first, std::uint8_t second) {
@@ -67,6 +92,13 @@ TEST_F(DutyColumnsTest, ADutyHoldsUntilTheNextFrameAndTheEnd) {
   columns_.finish();
   EXPECT_EQ(row(0), (std::vector<int>{50, 50, 0, 0, 0}));
   EXPECT_EQ(row(1), (std::vector<int>{1, 1, 2, 2, 2}));
+}
+
+TEST_F(DutyColumnsTest, ADutyIsSeenInTheColumnInWhichItEnds) {
+  add(10, 200, 0), add(12.9, 0, 30), add(14, 0, 0);
+  columns_.finish();
+  EXPECT_EQ(row(0), (std::vector<int>{200, 200, 200, 0, 0}));
+  EXPECT_EQ(row(1), (std::vector<int>{0, 0, 30, 30, 0})) << "it ends with a column";
 }
 
 TEST_F(DutyColumnsTest, WhatLiesOutsideIsNotShown) {

@@ -1,18 +1,27 @@
 // Films of traces: runs vestige-plot as a user does, decodes the file again, and looks at the pixels.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <webp/demux.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numeric>
+#include <sstream>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "tests/analysis/box_avatar.hpp"
 #include "tests/support/process.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 namespace {
@@ -146,7 +155,7 @@ class PlotFilmTest : public test::PlotTest {
 
 TEST_F(PlotFilmTest, LastsAsLongAsTheTraceAtItsSpeed) {
   record("--animation turn --count 3 --rate 100 --duration 1");
-  const Film slow = film("--fps 10 --speed 1/2");
+  const Film slow = film("--fps 10 --speed 1/2 --to 0.95");
   EXPECT_EQ(slow.loops, 0U) << "it repeats for ever";
   EXPECT_EQ(slow.duration_ms, std::vector<int>(20, 100));
   for (std::size_t i = 0; i < slow.pictures.size(); ++i) {
@@ -173,7 +182,7 @@ TEST_F(PlotFilmTest, AMotorLightsUpOnItsRegionWhileItRuns) {
   record("--animation none --colliders through.csv --rate 100 --duration 1");
   // The front is seen, whose upper half is touched at 0.88 s.
   const Film shown = film("--view front --fps 20 --from 0.7");
-  ASSERT_EQ(shown.pictures.size(), 6U);
+  ASSERT_EQ(shown.pictures.size(), 7U) << "six, and the last frame";
   const auto lit = [&](std::size_t picture) { return find(shown.pictures[picture], kSceneBegin, kSceneEnd, is_lit); };
   for (std::size_t before = 0; before < 4; ++before) EXPECT_LT(lit(before).count, 20U) << before;
   const Spots running = lit(4);
@@ -204,8 +213,10 @@ TEST_F(PlotFilmTest, AMotorLightsUpOnItsRegionWhileItRuns) {
 TEST_F(PlotFilmTest, TheRawFramesOfHoldZeroAreNotLostBetweenPictures) {
   record("--animation none --colliders through.csv --rate 1000 --duration 1");
   const Film shown = film("--view front --fps 4 --from 0.15 --hold 0");
-  EXPECT_GT(find(shown.pictures.back(), kSceneBegin, kSceneEnd, is_lit).count, 1000U)
+  ASSERT_EQ(shown.pictures.size(), 5U);
+  EXPECT_GT(find(shown.pictures[3], kSceneBegin, kSceneEnd, is_lit).count, 1000U)
       << "one frame at 0.88 s; the pictures are those of 0.65 s and 0.9 s";
+  EXPECT_LT(find(shown.pictures[4], kSceneBegin, kSceneEnd, is_lit).count, 20U);
   const Film later = film("--view front --fps 4 --from 0.95 --hold 0");
   EXPECT_LT(find(later.pictures.front(), kSceneBegin, kSceneEnd, is_lit).count, 20U) << "felt before the film began";
 }
@@ -236,6 +247,47 @@ TEST_F(PlotFilmTest, AContactLiesWhereTheStillFigureHasItAndFades) {
   EXPECT_EQ(sizes.back(), 0U) << "faded";
 }
 
+TEST_F(PlotFilmTest, ContactsBetweenPicturesAreSeenHoweverFarApartThoseAre) {
+  record("--animation none --colliders through.csv --rate 100 --duration 1");
+  // The contact at 0.88 s is older than --trail in the picture of 0.99 s.
+  const auto marks_of = [](const Picture& picture) { return find(picture, kSceneBegin, kSceneEnd, is_contact).count; };
+  const Film fast = film("--view front --fps 5 --speed 4 --trail 20 --hold 0", 640);
+  ASSERT_EQ(fast.pictures.size(), 3U) << "0 s, 0.8 s and the last frame";
+  EXPECT_EQ(marks_of(fast.pictures[1]), 0U);
+  EXPECT_GT(marks_of(fast.pictures[2]), 20U);
+}
+
+TEST_F(PlotFilmTest, NothingAfterTheLastPeriodIsLost) {
+  record("--animation none --colliders through.csv --rate 100 --duration 1");
+  const test::Outcome outcome = run("film box.mcap --view front --fps 1 --speed 1000 --width 320");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_error + outcome.standard_output, AllOf(HasSubstr("2 pictures"), HasSubstr("1 contact")));
+  const Film shown = read_film(folder_ / "box-film.webp");
+  ASSERT_EQ(shown.pictures.size(), 2U);
+  EXPECT_LT(find(shown.pictures[0], kSceneBegin, kSceneEnd, is_lit).count, 20U);
+  EXPECT_GT(find(shown.pictures[1], kSceneBegin, kSceneEnd, is_lit).count, 1000U);
+}
+
+TEST_F(PlotFilmTest, SaysWhatIsNotFinite) {
+  ASSERT_EQ(test::run("vestige record -q --count 1 --duration 0.02 -o t.mcap && vestige export -q t.mcap -o t.ndjson",
+                      folder_.path())
+                .exit_code,
+            0);
+  std::istringstream lines(read_text_file(folder_ / "t.ndjson"));
+  std::string changed;
+  for (std::string line; std::getline(lines, line);) {
+    nlohmann::json frame = nlohmann::json::parse(line);
+    if (frame["frame"] == 10) frame["pose"]["nodes"][7][0] = 3e38;
+    changed += frame.dump() + "\n";
+  }
+  write_text(folder_ / "again.ndjson", changed);
+  ASSERT_LE(test::run("vestige record -q --live - -o again.mcap < again.ndjson", folder_.path()).exit_code, 3);
+  const test::Outcome outcome = run("film again.mcap --fps 1 --width 320");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, AllOf(HasSubstr("again.mcap: 1 poses"), HasSubstr("the first in frame 10")));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "again-film.webp"));
+}
+
 TEST_F(PlotFilmTest, IsSeenFromTheSideThatIsAskedFor) {
   record("--animation none --count 1 --rate 10 --duration 1");
   const auto of_belly = [&](const std::string& side) {
@@ -264,6 +316,13 @@ TEST_F(PlotFilmTest, WithoutAMapThereIsNoMotor) {
   record("--animation none --colliders through.csv --rate 100 --duration 1");
   const Film shown = film("--map none --view front --fps 10 --from 0.8");
   for (const Picture& picture : shown.pictures) EXPECT_LT(find(picture, kSceneBegin, kSceneEnd, is_lit).count, 20U);
+  // Then no law matters, not even one that only spheres satisfy.
+  const test::Outcome outcome = run("film box.mcap --force --width 320 --to 0.1 --map none --law depth");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("there is no actuator map, so no motor runs"));
+  const test::Outcome felt = run("film box.mcap --force --width 320 --to 0.1 --law depth");
+  EXPECT_EQ(felt.exit_code, 1);
+  EXPECT_THAT(felt.standard_error, HasSubstr("only spheres are felt"));
 }
 
 TEST_F(PlotFilmTest, WhatCannotBeDoneIsSaidAndNothingIsWritten) {
@@ -287,6 +346,8 @@ TEST_F(PlotFilmTest, WhatCannotBeDoneIsSaidAndNothingIsWritten) {
   expect_refusal("--view above", "--view");
   expect_refusal("--to 1 --law loud", "there is no intensity law 'loud'");
   expect_refusal("--to 1 --sigma 9", "--sigma");
+  const test::Outcome first = run("film absent.mcap --from 2 --to 1");
+  EXPECT_EQ(first.exit_code, 2) << "before the trace is read";
   const test::Outcome no_trace = run("film box.gltf");
   EXPECT_EQ(no_trace.exit_code, 1);
   const test::Outcome no_gl = run("film box.mcap --to 1", "__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent");
