@@ -15,7 +15,7 @@ namespace vestige::plot {
 namespace {
 
 void refuse_long_film(std::uint64_t periods, const FilmSpan& span, std::string_view name) {
-  if (static_cast<double>(periods) <= kLongestFilm_s * span.rate_hz) return;
+  if (static_cast<double>(periods) <= kLongestFilm_s * span.rate_hz + 1) return;  // the last picture has a length, too
   throw UsageError(
       "plot film",
       fmt::format("the film of {} would be longer than {:g} s, and a film is held in memory", name, kLongestFilm_s),
