@@ -14,8 +14,7 @@ namespace vestige {
 
 namespace {
 
-double missed_share(const AccuracyPoint& point) {
-  const EventCounts& events = point.tolerated.all;
+double missed_share(const EventCounts& events) {
   return events.true_events() == 0 ? 0 : static_cast<double>(events.missed) / static_cast<double>(events.true_events());
 }
 
@@ -23,19 +22,19 @@ double missed_share(const AccuracyPoint& point) {
 
 std::optional<MostMissed> most_missed(std::span<const AccuracyScene> scenes) {
   std::optional<MostMissed> most;
-  double share = 0;
+  std::pair<double, double> shares = {0, 0};
   for (const AccuracyScene& scene : scenes)
     for (const AccuracyPoint& point : scene.points) {
-      const double missed = missed_share(point);
-      if (missed <= share) continue;
+      const std::pair missed = {missed_share(point.tolerated.all), missed_share(point.score.all)};
+      if (missed.first == 0 || missed <= shares) continue;
       most = {&scene, &point};
-      share = missed;
+      shares = missed;
     }
   return most;
 }
 
 std::string missed_page(const MovingScene& scene, const ActuatorMap& map, double rate_hz, std::vector<MissedSide> sides,
-                        const std::string& title) {
+                        const PageWords& words) {
   const std::array<MappedPerson, 1> people = {{{scene.avatar, map}}};
   const LawFlags law;
   std::vector<std::unique_ptr<SeenRun>> runs;
@@ -55,9 +54,9 @@ std::string missed_page(const MovingScene& scene, const ActuatorMap& map, double
   const std::uint64_t last = last_frame_within(scene, rate_hz);
   for (std::uint64_t i = 0; i <= last; ++i) pack_frame(sampler.next(), run_of_side, packer, contacts);
   PageContent content = packer.finish();
-  content.head["about"] = {"vestige " + commit().substr(0, 10)};
+  content.head["about"] = {words.about, "vestige " + commit().substr(0, 10)};
   content.head["warnings"] = nlohmann::ordered_json::array();
-  return make_page(title, content);
+  return make_page(words.title, content);
 }
 
 }  // namespace vestige

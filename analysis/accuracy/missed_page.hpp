@@ -18,8 +18,8 @@ struct MostMissed {
   const AccuracyPoint* point = nullptr;
 };
 
-/// Returns the point that misses the largest share of its true events within the tolerance, of equal ones the first.
-/// Returns nothing if nothing is missed.
+/// Returns the point that misses the largest share of its true events within the tolerance, of equal ones that which
+/// misses more by the rule of one test frame. Returns nothing if nothing is missed.
 std::optional<MostMissed> most_missed(std::span<const AccuracyScene> scenes);
 
 /// What finds contacts on a side of a page.
@@ -28,9 +28,14 @@ struct MissedSide {
   PeopleDetectors detectors;  ///< one, whose contacts carry `kPagePlanes`
 };
 
+struct PageWords {
+  std::string title;
+  std::string about;  ///< stands below the title
+};
+
 /// Returns the page of 'vestige view' on which these two sides stand beside each other, over the whole scene, sampled
 /// at `rate_hz`. Contacts that one side misses are marked in red.
 std::string missed_page(const MovingScene& scene, const ActuatorMap& map, double rate_hz, std::vector<MissedSide> sides,
-                        const std::string& title);
+                        const PageWords& words);
 
 }  // namespace vestige

@@ -205,7 +205,8 @@ class Measurement {
     const std::string what =
         fmt::format("What {} misses at {:g} Hz in {}", sides[0].title, most->point->rate_hz, most->scene->colliders);
     const MovingScene moving = moving_scene(*choice, most->scene->seeds.front());
-    const std::string page = missed_page(moving, scene_.map, most->point->rate_hz, std::move(sides), what);
+    const std::string page = missed_page(moving, scene_.map, most->point->rate_hz, std::move(sides),
+                                         {what, fmt::format("seed {}", most->scene->seeds.front())});
     OutputFile file(path, options_.common.overwrite());
     file.write(page);
     file.commit();
@@ -327,10 +328,11 @@ void show_missed(const Measurement& measurement, std::span<const AccuracyScene> 
   if (what.empty()) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
-    return;
   }
-  print_summary(fmt::format("{}: {}; D goes from one to the next\n", path, what), {options.common.json},
-                options.common);
+  if (!wanted) return;
+  print_summary(what.empty() ? "nothing is missed within the tolerance, so there is no page to watch\n"
+                             : fmt::format("{}: {}; D goes from one to the next\n", path, what),
+                {options.common.json}, options.common);
 }
 
 void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
@@ -479,7 +481,7 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
       ->check(help::kPositive);
   add_truth_options(*verb, *options);
   verb->add_flag("--no-figure", options->no_figure, "Draw neither the figure nor the page of missed contacts");
-  verb->add_option("-o,--output", options->output, "Folder for accuracy.json, run.json (times), and the figure")
+  verb->add_option("-o,--output", options->output, "Folder for accuracy.json, run.json (times), the figure, and missed.html")
       ->required()
       ->type_name("DIR");
   add_common_options(*verb, options->common);

@@ -76,8 +76,8 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
                 [&](mcap::Bytes bytes) { written.write(bytes); });
   add_all(trace, run, copy, options);
   if (layout) layout->write(viewer_layout(people));
-  written.commit();
   if (layout) layout->commit();
+  written.commit();
 
   const mcap::DamageList damages = copy.damages();
   print_summary(

@@ -22,14 +22,16 @@ namespace vestige::plot {
 
 namespace {
 
-/// A recorded scenario lies in the batch's folder.
+/// Returns the file of a trace if it is there as it was judged, otherwise "". A recorded scenario lies in the batch's
+/// folder.
 std::string file_of(const std::filesystem::path& batch, const ReportTrace& trace) {
-  return trace.seed ? (batch / "traces" / (trace.name + ".mcap")).string() : trace.given;
-}
-
-bool is_as_judged(const TellingTrace& one) {
-  if (!std::filesystem::is_regular_file(one.file)) return false;
-  return one.trace->sha256.empty() || sha256_of_file(one.file) == one.trace->sha256;
+  std::vector<std::filesystem::path> places = {trace.given, batch.parent_path() / trace.given};
+  if (trace.seed) places = {batch / "traces" / (trace.name + ".mcap")};
+  for (const std::filesystem::path& place : places) {
+    if (!std::filesystem::is_regular_file(place)) continue;
+    if (trace.sha256.empty() || sha256_of_file(place.string()) == trace.sha256) return place.string();
+  }
+  return "";
 }
 
 LawFlags law_flags(const std::filesystem::path& batch, const ReportData& data, const std::string& law) {
@@ -57,14 +59,13 @@ std::vector<Subject> read_people(const TraceReader& reader, const std::string& f
 
 }  // namespace
 
-std::optional<TellingTrace> telling_trace(const std::filesystem::path& batch, const ReportData& data,
-                                          const Candidate& candidate) {
+TellingTrace telling_trace(const std::filesystem::path& batch, const ReportData& data, const Candidate& candidate) {
   std::vector<TellingTrace> traces;
   for (std::size_t i = 0; i < data.traces.size(); ++i) {
     const ReportTrace& trace = data.traces[i];
     if (trace.contacts == 0) continue;
     const bool has_results = candidate.by_trace.size() == data.traces.size();
-    traces.push_back({&trace, file_of(batch, trace), has_results ? candidate.by_trace[i] : std::nullopt});
+    traces.push_back({&trace, "", has_results ? candidate.by_trace[i] : std::nullopt});
   }
   const bool higher_is_worse = data.metrics[data.headline].better == "lower";
   std::ranges::stable_sort(traces, [&](const TellingTrace& a, const TellingTrace& b) {
@@ -72,8 +73,17 @@ std::optional<TellingTrace> telling_trace(const std::filesystem::path& batch, co
     if (a.value != b.value) return (*a.value > *b.value) == higher_is_worse;
     return a.trace->contacts > b.trace->contacts;
   });
-  const auto found = std::ranges::find_if(traces, is_as_judged);
-  return found == traces.end() ? std::nullopt : std::optional(*found);
+  std::vector<std::string> not_there;
+  for (TellingTrace& trace : traces) {
+    trace.file = file_of(batch, *trace.trace);
+    if (trace.file.empty()) {
+      not_there.push_back(trace.trace->name);
+      continue;
+    }
+    trace.not_there = std::move(not_there);
+    return trace;
+  }
+  return {nullptr, "", {}, std::move(not_there)};
 }
 
 std::optional<std::string> map_view(const std::filesystem::path& batch, const ReportData& data,

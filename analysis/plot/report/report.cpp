@@ -203,6 +203,7 @@ class Report {
 
     const std::string html = report_html(page);
     folder_->commit([](const std::filesystem::path&) { return false; });
+    remove_other_views(page.maps, maps);
     OutputFile file(page_file, options_.overwrite);
     file.write(html);
     file.commit();
@@ -233,28 +234,47 @@ class Report {
     file.commit();
   }
 
-  /// Draws the page on which a map is watched. Returns nothing if there is no trace for it.
-  std::optional<MapView> watch(const ReportData& data, const Candidate& candidate) {
-    const std::optional<TellingTrace> telling = telling_trace(batch_, data, candidate);
-    if (!telling) return {};
+  /// Draws the page on which a map is watched, if there is a trace for it.
+  MapView watch(const ReportData& data, const Candidate& candidate) {
+    TellingTrace telling = telling_trace(batch_, data, candidate);
+    MapView view = {"", "", telling.value, std::move(telling.not_there)};
+    if (telling.trace == nullptr) return view;
+    view.trace = telling.trace->name;
     const double done = static_cast<double>(outcome_.figures) / static_cast<double>(figures_expected_);
-    const std::string& trace = telling->trace->name;
-    const std::string name = fmt::format("{}-{}.html", candidate.map, trace);
+    const std::string name = fmt::format("{}-{}.html", candidate.map, view.trace);
     try {
       const std::optional<std::string> page =
-          map_view(batch_, data, candidate, *telling, [&](double) { return progress_(done); });
+          map_view(batch_, data, candidate, telling, [&](double) { return progress_(done); });
       if (!page) throw Stopped();
       if (page->size() > kLargePage_bytes) {
         outcome_.warnings.push_back(fmt::format("{}: a page on which it moves would have {:.0f} MB, and is left out",
-                                                trace, static_cast<double>(page->size()) / 1e6));
-        return {};
+                                                view.trace, static_cast<double>(page->size()) / 1e6));
+        return view;
       }
       write_file(name, *page);
     } catch (const Error& error) {
-      outcome_.warnings.push_back(fmt::format("{}: cannot be watched: {}", trace, error.what()));
-      return {};
+      outcome_.warnings.push_back(fmt::format("{}: cannot be watched: {}", view.trace, error.what()));
+      return view;
     }
-    return MapView{"figures/" + name, trace, telling->value};
+    view.file = "figures/" + name;
+    return view;
+  }
+
+  /// Removes the pages of an earlier report, which this one does not show.
+  void remove_other_views(const std::vector<MapSection>& maps, const std::vector<std::string>& names) const {
+    std::set<std::string> shown;
+    for (const MapSection& map : maps)
+      if (map.view) shown.insert(std::filesystem::path(map.view->file).filename().string());
+    std::vector<std::filesystem::path> others;
+    for (const auto& entry : std::filesystem::directory_iterator(options_.output / "figures")) {
+      const std::string file = entry.path().filename().string();
+      const bool is_view = file.ends_with(".html") && std::ranges::any_of(names, [&](const std::string& map) {
+                             return file.starts_with(map + "-");
+                           });
+      if (is_view && !shown.contains(file)) others.push_back(entry.path());
+    }
+    std::error_code ignored;
+    for (const std::filesystem::path& other : others) std::filesystem::remove(other, ignored);
   }
 
   MapSection section(const ReportData& data, const std::string& name, const Avatar& avatar, const Contacts& contacts,

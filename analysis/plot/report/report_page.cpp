@@ -1,6 +1,7 @@
 #include "analysis/plot/report/report_page.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -294,11 +295,21 @@ class Page {
   }
 
   void watch(const MapView& view, const Candidate& candidate) {
+    const std::string gone = html_text(fmt::format("{}", fmt::join(view.not_there, ", ")));
+    if (view.file.empty()) {
+      if (!gone.empty())
+        add(out_,
+            "<p class=\"soft\">There is no page on which it moves: the files of {} are gone or have changed.</p>\n",
+            gone);
+      return;
+    }
     const std::string why = view.value ? fmt::format("in which {} does worst: {}{}", html_text(candidate.law),
                                                      number_text(*view.value), unit_of(headline()))
                                        : "which has the most contacts";
-    add(out_, "<p><a href=\"{}\">Watch it move</a>: the trace <strong>{}</strong>, {}.</p>\n", html_text(view.file),
-        html_text(view.trace), why);
+    const std::string but =
+        gone.empty() ? "" : fmt::format(", if {} is left out, whose file is gone or has changed", gone);
+    add(out_, "<p><a href=\"{}\">Watch it move</a>: the trace <strong>{}</strong>, {}{}.</p>\n", html_text(view.file),
+        html_text(view.trace), why, but);
   }
 
   static std::string counted_contacts(std::size_t count) {

@@ -24,9 +24,10 @@ struct PageActuator {
 
 /// A page of 'vestige view' that shows a map on the trace that tells most about it.
 struct MapView {
-  std::string file;  ///< beside the report, with '/'
+  std::string file;  ///< beside the report, with '/'; empty: there is no page
   std::string trace;
-  std::optional<double> value;  ///< of the headline
+  std::optional<double> value;         ///< of the headline
+  std::vector<std::string> not_there;  ///< traces that would tell more, but whose files are gone or have changed
 };
 
 /// The part of the report about one map.

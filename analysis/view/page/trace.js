@@ -192,31 +192,53 @@ class Trace {
   get sides() { return Array.from({length: Math.max(1, this.head.sides.length)}, (_, i) => this.people.filter((p) => p.info.side === i)); }
 
   /**
-   * Whether each contact of a person is found, or felt, on that person's side alone: within `kSameContact_s`, the other
-   * side has no contact of the same collider, or none with an actuator where this one has one.
+   * Whether each contact of a person is found, or felt, on that person's side alone. Contacts of the two sides make
+   * pairs: of the same collider in the same frame, and what is left over within `kSameContact_s`. Alone is a contact
+   * without a partner, and one with an actuator whose partner has none.
    */
   contactsAlone(person) {
     const alone = new Uint8Array(person.contact_row.length);
     const other = this.people.find(({info}) => info.body === person.info.body && info.side !== person.info.side);
     if (other === undefined) return alone;
-    const key = (of, i) => `${of.contact_collider[i]} ${of.contact_actuator[i] > 0}`;
-    const times = new Map();
-    for (let i = 0; i < other.contact_row.length; ++i) {
-      if (!times.has(key(other, i))) times.set(key(other, i), []);
-      times.get(key(other, i)).push(this.time_s[other.contact_row[i]]);
-    }
-    const has = (name, time_s) => {
-      const found = times.get(name) || [];
-      const near = found[lastUpTo(found, time_s + kSameContact_s)];
-      return near !== undefined && near >= time_s - kSameContact_s;
-    };
+    const its = this.byCollider(other);
+    const partner = new Map();
+    for (const [collider, mine] of this.byCollider(person))
+      for (const [i, k] of this.pairs(person, mine, other, its.get(collider) || [])) partner.set(i, k);
     for (let i = 0; i < alone.length; ++i) {
-      const time_s = this.time_s[person.contact_row[i]];
-      const felt = has(`${person.contact_collider[i]} true`, time_s);
-      const found = felt || has(`${person.contact_collider[i]} false`, time_s);
-      alone[i] = person.contact_actuator[i] > 0 ? !felt : !found;
+      const felt = person.contact_actuator[i] > 0;
+      alone[i] = !partner.has(i) || (felt && other.contact_actuator[partner.get(i)] === 0);
     }
     return alone;
+  }
+
+  /** The contacts of each collider, in the order of time. */
+  byCollider(person) {
+    const of = new Map();
+    person.contact_collider.forEach((collider, i) => {
+      if (!of.has(collider)) of.set(collider, []);
+      of.get(collider).push(i);
+    });
+    return of;
+  }
+
+  /** Pairs of contacts of one collider. */
+  pairs(person, mine, other, its) {
+    const found = [];
+    const rows = new Map(its.map((i) => [other.contact_row[i], i]));
+    const left = mine.filter((i) => {
+      const same = rows.get(person.contact_row[i]);
+      if (same !== undefined) found.push([i, same]);
+      return same === undefined;
+    });
+    const taken = new Set(found.map(([, i]) => i));
+    const rest = its.filter((i) => !taken.has(i));
+    for (let a = 0, b = 0; a < left.length && b < rest.length;) {
+      const later_s = this.time_s[person.contact_row[left[a]]] - this.time_s[other.contact_row[rest[b]]];
+      if (Math.abs(later_s) <= kSameContact_s) found.push([left[a++], rest[b++]]);
+      else if (later_s < 0) ++a;
+      else ++b;
+    }
+    return found;
   }
 
   get rows() { return this.frame.length; }

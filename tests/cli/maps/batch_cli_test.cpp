@@ -127,7 +127,10 @@ TEST_F(BatchCommandLine, ItsReportShowsTheBestMapsInMotion) {
                 ".mcap; true")
                 .exit_code,
             0);
-  EXPECT_THAT(report(), AllOf(Not(HasSubstr(link_to(worst))), HasSubstr(link_to(std::next(traces.rbegin())->second))));
+  EXPECT_THAT(report(), AllOf(Not(HasSubstr(link_to(worst))), HasSubstr(link_to(std::next(traces.rbegin())->second)),
+                              HasSubstr("if " + worst + " is left out")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / ("out/figures/" + map + "-" + worst + ".html")))
+      << "of the page before";
 }
 
 TEST_F(BatchCommandLine, GivesAllThatIsNeededToRecomputeTheRankingElsewhere) {
