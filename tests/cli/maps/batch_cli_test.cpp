@@ -103,7 +103,8 @@ TEST_F(BatchCommandLine, ItsReportShowsTheBestMapsInMotion) {
   const std::string map = best["map"];
   const std::string metric = json_in("out/ranking.json")["rank_by"];
   std::map<double, std::string> traces;  // by how well they do
-  for (const auto& one : json_in("out/scores.json")["scores"])
+  const auto scores = json_in("out/scores.json")["scores"];
+  for (const auto& one : scores)
     if (one["map"] == map && one["law"] == best["law"] && one["values"][metric].is_number())
       traces[one["values"][metric].get<double>()] = one["trace"];
   ASSERT_EQ(traces.size(), 3U) << "lower is better";
