@@ -481,7 +481,8 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
       ->check(help::kPositive);
   add_truth_options(*verb, *options);
   verb->add_flag("--no-figure", options->no_figure, "Draw neither the figure nor the page of missed contacts");
-  verb->add_option("-o,--output", options->output, "Folder for accuracy.json, run.json (times), the figure, and missed.html")
+  verb->add_option("-o,--output", options->output,
+                   "Folder for accuracy.json, run.json (times), the figure, and missed.html")
       ->required()
       ->type_name("DIR");
   add_common_options(*verb, options->common);

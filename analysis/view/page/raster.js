@@ -45,7 +45,8 @@ class Raster {
     const lines = Math.max(1, this.lines.length);
     this.line_px = Math.min(kRowHeight_px, kMostHeight_px / lines);
     this.height = Math.ceil(this.line_px * lines) + 2;
-    this.left = this.line_px >= kLeastLabelled_px ? Math.min(this.trace.head.sides.length > 1 ? 250 : 170, Math.round(this.width * 0.3)) : 8;
+    const label_px = this.trace.head.sides.length > 1 ? 250 : 170;
+    this.left = this.line_px >= kLeastLabelled_px ? Math.min(label_px, Math.round(this.width * 0.3)) : 8;
     this.canvas.style.height = `${this.height}px`;
     for (const canvas of [this.canvas, this.picture]) {
       canvas.width = this.width * ratio;
