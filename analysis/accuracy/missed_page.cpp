@@ -5,9 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "analysis/base/provenance.hpp"
 #include "analysis/run/seen_run.hpp"
-#include "analysis/view/page.hpp"
 #include "analysis/view/trace_page.hpp"
 
 namespace vestige {
@@ -20,11 +18,14 @@ double missed_share(const EventCounts& events) {
 
 }  // namespace
 
-std::optional<MostMissed> most_missed(std::span<const AccuracyScene> scenes) {
+std::optional<MostMissed> most_missed(std::span<const AccuracyScene> scenes,
+                                      std::span<const AccuracyContestant> contestants) {
   std::optional<MostMissed> most;
   std::pair<double, double> shares = {0, 0};
   for (const AccuracyScene& scene : scenes)
     for (const AccuracyPoint& point : scene.points) {
+      const AccuracyContestant& contestant = contestants[point.contestant];
+      if (contestant.method == Method::kCcd && !contestant.instance->is_approximate()) continue;
       const std::pair missed = {missed_share(point.tolerated.all), missed_share(point.score.all)};
       if (missed.first == 0 || missed <= shares) continue;
       most = {&scene, &point};
@@ -33,8 +34,8 @@ std::optional<MostMissed> most_missed(std::span<const AccuracyScene> scenes) {
   return most;
 }
 
-std::string missed_page(const MovingScene& scene, const ActuatorMap& map, double rate_hz, std::vector<MissedSide> sides,
-                        const PageWords& words) {
+std::optional<MissedPage> missed_page(const MovingScene& scene, const ActuatorMap& map, const MissedSampling& sampling,
+                                      std::vector<MissedSide> sides, const std::function<bool(double)>& progress) {
   const std::array<MappedPerson, 1> people = {{{scene.avatar, map}}};
   const LawFlags law;
   std::vector<std::unique_ptr<SeenRun>> runs;
@@ -49,14 +50,16 @@ std::string missed_page(const MovingScene& scene, const ActuatorMap& map, double
     bodies.push_back({"", scene.avatar, map, 0, i});
   }
   PagePacker packer(bodies, titles, scene.collider_ids);
-  std::vector<std::uint64_t> contacts(sides.size());
-  SceneSampler sampler(scene, rate_hz);
-  const std::uint64_t last = last_frame_within(scene, rate_hz);
-  for (std::uint64_t i = 0; i <= last; ++i) pack_frame(sampler.next(), run_of_side, packer, contacts);
-  PageContent content = packer.finish();
-  content.head["about"] = {words.about, "vestige " + commit().substr(0, 10)};
-  content.head["warnings"] = nlohmann::ordered_json::array();
-  return make_page(words.title, content);
+  MissedPage page = {{}, std::vector<std::uint64_t>(sides.size())};
+  SceneSampler sampler(scene, sampling.rate_hz);
+  const std::uint64_t last = last_frame_within(scene, sampling.rate_hz);
+  for (std::uint64_t i = 0; i <= last; ++i) {
+    pack_frame(sampler.next(), run_of_side, packer, page.contacts);
+    if (!progress(static_cast<double>(i + 1) / static_cast<double>(last + 1))) return {};
+  }
+  page.content = packer.finish();
+  page.content.head["same_contact_s"] = sampling.tolerance_s;
+  return page;
 }
 
 }  // namespace vestige

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +10,7 @@
 #include "analysis/accuracy/accuracy.hpp"
 #include "analysis/accuracy/moving_scene.hpp"
 #include "analysis/run/detector_team.hpp"
+#include "analysis/view/page_packer.hpp"
 #include "detector/actuator_map.hpp"
 
 namespace vestige {
@@ -19,8 +22,15 @@ struct MostMissed {
 };
 
 /// Returns the point that misses the largest share of its true events within the tolerance, of equal ones that which
-/// misses more by the rule of one test frame. Returns nothing if nothing is missed.
-std::optional<MostMissed> most_missed(std::span<const AccuracyScene> scenes);
+/// misses more by the rule of one test frame. Exact ccd does not count. Returns nothing if nothing is missed.
+std::optional<MostMissed> most_missed(std::span<const AccuracyScene> scenes,
+                                      std::span<const AccuracyContestant> contestants);
+
+/// How a scene is sampled, and which contacts of two sides are the same.
+struct MissedSampling {
+  double rate_hz = 0;
+  double tolerance_s = 0;
+};
 
 /// What finds contacts on a side of a page.
 struct MissedSide {
@@ -28,14 +38,15 @@ struct MissedSide {
   PeopleDetectors detectors;  ///< one, whose contacts carry `kPagePlanes`
 };
 
-struct PageWords {
-  std::string title;
-  std::string about;  ///< stands below the title
+struct MissedPage {
+  PageContent content;                  ///< with all that `make_page` needs but `about`
+  std::vector<std::uint64_t> contacts;  ///< of each side
 };
 
-/// Returns the page of 'vestige view' on which these two sides stand beside each other, over the whole scene, sampled
-/// at `rate_hz`. Contacts that one side misses are marked in red.
-std::string missed_page(const MovingScene& scene, const ActuatorMap& map, double rate_hz, std::vector<MissedSide> sides,
-                        const PageWords& words);
+/// Makes the page of 'vestige view' on which two sides stand beside each other, over the whole scene, sampled as
+/// `sampling` says. Contacts that only one side has are marked in red. `progress`
+/// receives the share done; if it returns false, nothing is returned.
+std::optional<MissedPage> missed_page(const MovingScene& scene, const ActuatorMap& map, const MissedSampling& sampling,
+                                      std::vector<MissedSide> sides, const std::function<bool(double)>& progress);
 
 }  // namespace vestige

@@ -31,7 +31,10 @@ void ColliderTracks::add(const PageRow& at, const TraceFrame& frame, const glm::
     const auto found = std::ranges::lower_bound(ids_, collider.id);
     if (found == ids_.end() || *found != collider.id) continue;
     const Sample sample = {at, glm::dvec4(collider.position_m - origin_m, collider.radius_m)};
-    if (!within_reach(sample.place)) continue;
+    if (!within_reach(sample.place)) {
+      ++left_out_;
+      continue;
+    }
     Track& track = tracks_[static_cast<std::size_t>(found - ids_.begin())];
     const bool goes_on = !track.keys.empty() && track.last.at.index + 1 == at.index &&
                          track.last.at.time_s < at.time_s && !std::ranges::binary_search(jumped, collider.id);

@@ -28,6 +28,8 @@ class ColliderTracks {
 
   /// Takes the colliders of the next frame, of which those with other ids are ignored.
   void add(const PageRow& at, const TraceFrame& frame, const glm::dvec3& origin_m);
+  /// How many places of colliders cannot be drawn: not finite, or out of the page's reach.
+  std::size_t left_out() const { return left_out_; }
   /// Ends all ways and adds the arrays of `PageArrays`.
   void finish(PageArrays& arrays);
 
@@ -56,6 +58,7 @@ class ColliderTracks {
 
   std::vector<std::uint32_t> ids_;
   std::vector<Track> tracks_;
+  std::size_t left_out_ = 0;
 };
 
 }  // namespace vestige

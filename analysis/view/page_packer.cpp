@@ -5,13 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 #include <utility>
 
 #include "analysis/colours/region_colours.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 
 namespace {
+
+/// No place in a trace of a person is farther from the world's origin.
+constexpr double kFarthest_m = 1e9;
 
 /// Rounded up, so that the page promises no more than is true.
 double tenths_up(double value) {
@@ -69,7 +74,7 @@ void PagePacker::find_origin(const TraceFrame& frame) {
     if (!pose.nodes.empty()) places_m.push_back(pose.origin_m);
   for (const ColliderSample& collider : frame.colliders) places_m.push_back(collider.position_m);
   const auto found = std::ranges::find_if(places_m, [](const glm::dvec3& place_m) {
-    return std::isfinite(place_m.x) && std::isfinite(place_m.y) && std::isfinite(place_m.z);
+    return glm::all(glm::lessThan(glm::abs(place_m), glm::dvec3(kFarthest_m)));  // nor NaN
   });
   if (found == places_m.end()) return;
   origin_m_ = glm::round(*found);
@@ -162,6 +167,8 @@ PageContent PagePacker::finish() {
   PageContent content;
   content.head = {
       {"version", 1},
+      {"warnings", nlohmann::ordered_json::array()},
+      {"same_contact_s", kSameContact_s},
       {"unit_m", kPageUnit_m},
       {"origin_m", {origin_m_.x, origin_m_.y, origin_m_.z}},
       {"error_mm", {{"skin", tenths_up(error_mm)}, {"colliders", tenths_up(1e3 * ColliderTracks::kError_m)}}},
@@ -170,6 +177,11 @@ PageContent PagePacker::finish() {
       {"people", std::move(people)},
       {"arrays", arrays_.table()},
       {"bytes", arrays_.byte_count()}};
+  std::size_t poses = 0;
+  for (const PoseKeys& body : poses_) poses += body.left_out();
+  if (poses + colliders_.left_out() > 0)
+    content.warn(fmt::format("{} and {} of colliders cannot be drawn: they are not finite, or too far away",
+                             counted(poses, "pose"), counted(colliders_.left_out(), "place")));
   content.data = arrays_.packed();
   return content;
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/view/collider_tracks.hpp"
@@ -29,10 +30,17 @@ struct PagePerson {
   std::size_t side = 0;  ///< counted from 0
 };
 
+/// Contacts of one collider on the two sides of a page are the same if no more time lies between them: a little more
+/// than a frame at 30 Hz. A page may have another limit in its head.
+inline constexpr double kSameContact_s = 0.035;
+
 /// What a page carries.
 struct PageContent {
   nlohmann::ordered_json head;
   std::string data;  ///< `PageArrays::packed`
+
+  /// Adds a sentence to those that stand on top of the page.
+  void warn(std::string sentence) { head["warnings"].push_back(std::move(sentence)); }
 };
 
 /// Packs a trace with its contacts and duties for a page. Poses and colliders are thinned for the eye (`PoseKeys`,
@@ -52,7 +60,8 @@ class PagePacker {
   /// Takes the duties of a person in the frame taken last.
   void add_duties(std::size_t person, const ActuatorFrame& felt);
 
-  /// Returns head and data. The head has people, arrays, and how exact the picture is.
+  /// Returns head and data. The head has people, arrays, how exact the picture is, and warnings about what is not
+  /// drawn.
   PageContent finish();
 
  private:

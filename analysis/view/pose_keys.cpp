@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kAlmost = 1e-6;      // of a second: times are rounded
 constexpr std::size_t kMostOut = 64;  // poses left out in a row: each pose is compared with all of them
+constexpr double kMostScale = 1e3;    // one step rounds a joint's matrices of all poses: a larger one would spoil them
 
 bool is_drawable(const glm::dvec3& root_m, const std::vector<glm::dmat4>& palette) {
   for (int axis = 0; axis < 3; ++axis)
@@ -24,7 +25,7 @@ bool is_drawable(const glm::dvec3& root_m, const std::vector<glm::dmat4>& palett
   for (const glm::dmat4& matrix : palette)
     for (int column = 0; column < 4; ++column)
       for (int axis = 0; axis < 3; ++axis)
-        if (!(std::abs(matrix[column][axis]) < kPageReach_m)) return false;
+        if (!(std::abs(matrix[column][axis]) < (column < 3 ? kMostScale : kPageReach_m))) return false;
   return true;
 }
 
@@ -88,7 +89,7 @@ std::optional<PoseKeys::Posed> PoseKeys::take(const PageRow& at, const Pose& pos
   std::vector<glm::dmat4> world;
   world_matrices(avatar_, pose, world);
   const glm::dvec3 root = world[static_cast<std::size_t>(avatar_.root_node)][3];
-  Posed posed = {at, pose.origin_m + root - origin_m, {}};
+  Posed posed = {at, pose.origin_m - origin_m + root, {}};
   palette_matrices(avatar_, pose, posed.palette);
   for (glm::dmat4& matrix : posed.palette) matrix[3] -= glm::dvec4(root, 0);
   if (!is_drawable(posed.root_m, posed.palette)) return std::nullopt;
@@ -97,7 +98,10 @@ std::optional<PoseKeys::Posed> PoseKeys::take(const PageRow& at, const Pose& pos
 
 void PoseKeys::add(const PageRow& at, const Pose& pose, const glm::dvec3& origin_m) {
   std::optional<Posed> taken = take(at, pose, origin_m);
-  if (!taken) return;
+  if (!taken) {
+    if (!pose.nodes.empty()) ++left_out_;
+    return;
+  }
   Posed now = std::move(*taken);
   const PageRow& before = since_.empty() ? kept_.at : since_.back().at;
   if (rows_.empty() || now.at.index != before.index + 1 || now.at.row != before.row + 1) {

@@ -38,6 +38,8 @@ class PoseKeys {
   /// Adds the arrays pose_… of `PageArrays`. Returns the steps of `pose_matrix`: of each entry of the palette two.
   std::vector<double> finish(PageArrays& arrays, const std::string& prefix);
 
+  /// How many poses there are that cannot be drawn.
+  std::size_t left_out() const { return left_out_; }
   /// How far any vertex is drawn from its place in any frame, at most. Final after `finish`.
   double largest_error_mm() const { return 1e3 * (thinned_m_ + cut_m_ + rounded_m_); }
   /// Where the person looks in the first pose, as an angle about +Y in degrees: 0 along +z, 90 along +x.
@@ -76,6 +78,7 @@ class PoseKeys {
   double thinned_m_ = 0;
   double cut_m_ = 0;  ///< by fewer and rounded influences
   double rounded_m_ = 0;
+  std::size_t left_out_ = 0;
 };
 
 }  // namespace vestige

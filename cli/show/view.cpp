@@ -96,14 +96,16 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   PageContent content = packer.finish();
   const double skin_error_mm = content.head["error_mm"]["skin"].get<double>();
   if (skin_error_mm > 1e3 * kVisible_m)
-    warn(fmt::format("{}: skin is drawn up to {} mm from its place: a page draws a vertex by at most four joints",
+    warn(fmt::format("{}: skin is drawn up to {} mm from its place: a page draws a vertex by at most four joints, and "
+                     "rounds their motions",
                      output, skin_error_mm),
          verbosity);
   content.head["about"] = about(options, sides);
-  std::vector<std::string> warnings = damage_of(trace.reader, options.trace);
+  for (const nlohmann::ordered_json& sentence : content.head["warnings"])
+    warn(fmt::format("{}: {}", output, sentence.get<std::string>()), verbosity);
   const std::vector<std::string> notes = notes_of(*sides.front().run, trace);  // all sides get the same frames
-  warnings.insert(warnings.end(), notes.begin(), notes.end());
-  content.head["warnings"] = std::move(warnings);
+  for (std::string& damage : damage_of(trace.reader, options.trace)) content.warn(std::move(damage));
+  for (const std::string& note : notes) content.warn(note);
   const std::string title = options.trace == "-" ? "trace" : std::filesystem::path(options.trace).filename().string();
   const std::string page = make_page(title, content);
   OutputFile file(output, options.common.overwrite());

@@ -25,12 +25,14 @@ namespace {
 /// Returns the file of a trace if it is there as it was judged, otherwise "". A recorded scenario lies in the batch's
 /// folder.
 std::string file_of(const std::filesystem::path& batch, const ReportTrace& trace) {
-  std::vector<std::filesystem::path> places = {trace.given, batch.parent_path() / trace.given};
+  std::vector<std::filesystem::path> places = {trace.given, batch / ".." / trace.given};
   if (trace.seed) places = {batch / "traces" / (trace.name + ".mcap")};
-  for (const std::filesystem::path& place : places) {
-    if (!std::filesystem::is_regular_file(place)) continue;
-    if (trace.sha256.empty() || sha256_of_file(place.string()) == trace.sha256) return place.string();
-  }
+  for (const std::filesystem::path& place : places) try {
+      std::error_code ignored;
+      if (!std::filesystem::is_regular_file(place, ignored)) continue;
+      if (trace.sha256.empty() || sha256_of_file(place.string()) == trace.sha256) return place.string();
+    } catch (const Error&) {  // it cannot be read
+    }
   return "";
 }
 
@@ -103,10 +105,10 @@ std::optional<std::string> map_view(const std::filesystem::path& batch, const Re
   content.head["about"] = {"map " + candidate.map, fmt::format("law {}, hold {:g} ms", law.law, law.hold_ms),
                            fmt::format("detector {}, {}", run.detector(), vestige::name_of(data.method)),
                            "vestige " + commit().substr(0, 10)};
-  std::vector<std::string> warnings = damage_of(reader, telling.trace->given);
+  for (std::string& damage : damage_of(reader, telling.trace->given)) content.warn(std::move(damage));
   for (std::size_t i = 0; i < people.size(); ++i)
-    if (std::string note = run.non_finite(i); !note.empty()) warnings.push_back(std::move(note));
-  content.head["warnings"] = std::move(warnings);
+    if (const std::string note = run.non_finite(i); !note.empty())
+      content.warn(people.size() == 1 ? note : fmt::format("person {}: {}", i + 1, note));
   return make_page(telling.trace->name, content);
 }
 

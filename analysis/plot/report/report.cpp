@@ -38,6 +38,8 @@ namespace {
 constexpr std::size_t kRankedShown = 40;
 /// The best maps that can be watched. Each page takes a megabyte or more.
 constexpr std::size_t kMapsWatched = 3;
+/// Stands between map and trace in the page's name, and in no name of these.
+constexpr char kOfTrace = '+';
 
 /// Thrown where the user stopped; not an error.
 struct Stopped {};
@@ -240,24 +242,30 @@ class Report {
     MapView view = {"", "", telling.value, std::move(telling.not_there)};
     if (telling.trace == nullptr) return view;
     view.trace = telling.trace->name;
+    if (data.approximate)
+      view.problem = "the batch's detector puts simpler shapes in place of the skin";
+    else
+      draw_view(data, candidate, telling, view);
+    return view;
+  }
+
+  void draw_view(const ReportData& data, const Candidate& candidate, const TellingTrace& telling, MapView& view) {
     const double done = static_cast<double>(outcome_.figures) / static_cast<double>(figures_expected_);
-    const std::string name = fmt::format("{}-{}.html", candidate.map, view.trace);
+    const std::string name = fmt::format("{}{}{}.html", candidate.map, kOfTrace, view.trace);
     try {
       const std::optional<std::string> page =
           map_view(batch_, data, candidate, telling, [&](double) { return progress_(done); });
       if (!page) throw Stopped();
-      if (page->size() > kLargePage_bytes) {
-        outcome_.warnings.push_back(fmt::format("{}: a page on which it moves would have {:.0f} MB, and is left out",
-                                                view.trace, static_cast<double>(page->size()) / 1e6));
-        return view;
+      if (page->size() <= kLargePage_bytes) {
+        write_file(name, *page);
+        view.file = "figures/" + name;
+        return;
       }
-      write_file(name, *page);
+      view.problem = fmt::format("of {} it would have {:.0f} MB", view.trace, static_cast<double>(page->size()) / 1e6);
     } catch (const Error& error) {
-      outcome_.warnings.push_back(fmt::format("{}: cannot be watched: {}", view.trace, error.what()));
-      return view;
+      view.problem = fmt::format("{} cannot be drawn", view.trace);
+      outcome_.warnings.push_back(fmt::format("{}: no page on which it moves: {}", view.trace, error.what()));
     }
-    view.file = "figures/" + name;
-    return view;
   }
 
   /// Removes the pages of an earlier report, which this one does not show.
@@ -269,7 +277,7 @@ class Report {
     for (const auto& entry : std::filesystem::directory_iterator(options_.output / "figures")) {
       const std::string file = entry.path().filename().string();
       const bool is_view = file.ends_with(".html") && std::ranges::any_of(names, [&](const std::string& map) {
-                             return file.starts_with(map + "-");
+                             return file.starts_with(map + kOfTrace);
                            });
       if (is_view && !shown.contains(file)) others.push_back(entry.path());
     }

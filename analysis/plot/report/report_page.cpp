@@ -297,10 +297,10 @@ class Page {
   void watch(const MapView& view, const Candidate& candidate) {
     const std::string gone = html_text(fmt::format("{}", fmt::join(view.not_there, ", ")));
     if (view.file.empty()) {
-      if (!gone.empty())
-        add(out_,
-            "<p class=\"soft\">There is no page on which it moves: the files of {} are gone or have changed.</p>\n",
-            gone);
+      if (view.problem.empty() && gone.empty()) return;
+      const std::string why = view.problem.empty() ? fmt::format("the files of {} are gone or have changed", gone)
+                                                   : html_text(view.problem);
+      add(out_, "<p class=\"soft\">There is no page on which it moves: {}.</p>\n", why);
       return;
     }
     const std::string why = view.value ? fmt::format("in which {} does worst: {}{}", html_text(candidate.law),

@@ -28,6 +28,7 @@ struct MapView {
   std::string trace;
   std::optional<double> value;         ///< of the headline
   std::vector<std::string> not_there;  ///< traces that would tell more, but whose files are gone or have changed
+  std::string problem = {};            ///< why there is no page; empty: no trace is there
 };
 
 /// The part of the report about one map.

@@ -59,7 +59,7 @@ class Player {
     const named = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
     byId("about").textContent = [
       named(rows, "frame"), named(colliders.id.length, "collider"),
-      head.sides.length > 1 ? `${contacts.map((count) => count.toLocaleString("en")).join(" and ")} contacts, ${alone} on one side alone`
+      head.sides.length > 1 ? `${contacts.map((count) => count.toLocaleString("en")).join(" and ")} contacts, ${alone.toLocaleString("en")} on one side alone`
         : named(contacts[0], "contact"),
       ...head.about].join(" · ");
     byId("precision").textContent =

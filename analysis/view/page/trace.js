@@ -2,7 +2,7 @@
 // The trace at any time: the bodies' poses, their contacts and motors, and the colliders' places. Nothing here draws.
 // A row is a frame's place among the frames of the page, from 0 on; a frame's number is the trace's own.
 
-const kSameContact_s = 0.035;  // as `vestige accuracy` takes two contacts for one
+const kRounding_s = 1e-9;  // of the difference of two times
 
 /** The skin of one person, and what happens to it. */
 class Person {
@@ -193,7 +193,7 @@ class Trace {
 
   /**
    * Whether each contact of a person is found, or felt, on that person's side alone. Contacts of the two sides make
-   * pairs: of the same collider in the same frame, and what is left over within `kSameContact_s`. Alone is a contact
+   * pairs: of the same collider in the same frame, and what is left over within `same_contact_s`. Alone is a contact
    * without a partner, and one with an actuator whose partner has none.
    */
   contactsAlone(person) {
@@ -234,7 +234,7 @@ class Trace {
     const rest = its.filter((i) => !taken.has(i));
     for (let a = 0, b = 0; a < left.length && b < rest.length;) {
       const later_s = this.time_s[person.contact_row[left[a]]] - this.time_s[other.contact_row[rest[b]]];
-      if (Math.abs(later_s) <= kSameContact_s) found.push([left[a++], rest[b++]]);
+      if (Math.abs(later_s) <= this.head.same_contact_s + kRounding_s) found.push([left[a++], rest[b++]]);
       else if (later_s < 0) ++a;
       else ++b;
     }

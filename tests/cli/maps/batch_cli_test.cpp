@@ -115,13 +115,13 @@ TEST_F(BatchCommandLine, ItsReportShowsTheBestMapsInMotion) {
     return read_text_file(folder_ / "out/report.html");
   };
   const auto link_to = [&](const std::string& trace) {
-    return "<a href=\"figures/" + map + "-" + trace + ".html\">Watch it move</a>: the trace <strong>" + trace;
+    return "<a href=\"figures/" + map + "+" + trace + ".html\">Watch it move</a>: the trace <strong>" + trace;
   };
   const std::string worst = traces.rbegin()->second;
   const std::string text = report("4");
   EXPECT_THAT(text, HasSubstr(link_to(worst)));
   EXPECT_EQ(run("grep -o 'Watch it move' out/report.html | wc -l").standard_output, "3\n");
-  const std::string page = read_text_file(folder_ / ("out/figures/" + map + "-" + worst + ".html"));
+  const std::string page = read_text_file(folder_ / ("out/figures/" + map + "+" + worst + ".html"));
   EXPECT_THAT(page, AllOf(HasSubstr("<title>" + worst), HasSubstr("\"map " + map), HasSubstr("hold 60 ms")));
 
   ASSERT_EQ(run("rm -f out/traces/" + worst + ".mcap; [ -e " + worst + ".mcap ] && cp out/traces/slide.mcap " + worst +
@@ -130,7 +130,7 @@ TEST_F(BatchCommandLine, ItsReportShowsTheBestMapsInMotion) {
             0);
   EXPECT_THAT(report("1"), AllOf(Not(HasSubstr(link_to(worst))), HasSubstr(link_to(std::next(traces.rbegin())->second)),
                                  HasSubstr("if " + worst + " is left out")));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / ("out/figures/" + map + "-" + worst + ".html")))
+  EXPECT_FALSE(std::filesystem::exists(folder_ / ("out/figures/" + map + "+" + worst + ".html")))
       << "of the page before";
 }
 

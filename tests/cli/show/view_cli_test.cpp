@@ -252,6 +252,21 @@ TEST_F(View, SaysWhatIsNotFinite) {
   EXPECT_THAT(seen[0]["middle"]["opaque"].get<double>(), Gt(0.2)) << "the body stays where it was";
 }
 
+// An absurd place is finite, so the detector takes it; the page must not promise to show it.
+TEST_F(View, SaysWhatIsTooFarAwayToDraw) {
+  ASSERT_EQ(run("vestige record -q --count 3 --duration 0.2 -o t.mcap").exit_code, 0);
+  retell([](json& frame) {
+    if (frame["frame"] == 0) frame["pose"]["origin"] = {1e30, 0, 0};
+    if (frame["frame"] == 100) frame["colliders"][1]["position"] = {0, 3e5, 0};
+  });
+  const test::Outcome made = run("vestige view again.mcap -o page.html");
+  EXPECT_EQ(made.exit_code, 0);
+  EXPECT_THAT(made.standard_error, HasSubstr("1 pose and 1 place of colliders cannot be drawn"));
+  const json seen = browse({{"steps", {{{"scrub", 150}, {"see", true}}}}});
+  EXPECT_THAT(seen[0]["warnings"], ElementsAre(HasSubstr("1 pose and 1 place")));
+  EXPECT_THAT(seen[0]["middle"]["opaque"].get<double>(), Gt(0.2)) << "all others are";
+}
+
 TEST_F(View, LooksAtTheFaceOfWhoStandsTurned) {
   make("", "--count 1 --duration 0.05");
   const json ahead = browse({{"steps", {kSee, press("3")}}});
