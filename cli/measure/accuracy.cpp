@@ -203,7 +203,7 @@ class Measurement {
       std::vector<MissedSide> sides;
       sides.push_back(missed_side(contestant.detector, contestant.method));
       sides.push_back(missed_side("cpu", Method::kCcd));
-      const std::string what =
+      std::string what =
           fmt::format("What {} misses at {:g} Hz in {}", sides[0].title, most->point->rate_hz, most->scene->colliders);
       Progress progress(what, options_.common.verbosity());
       std::optional<MissedPage> page =

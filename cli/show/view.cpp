@@ -87,6 +87,7 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   require_frames(trace.reader, options.trace);
   const std::vector<ViewSide> sides = make_sides(choices, trace, options);
   std::vector<std::string> detectors;
+  detectors.reserve(sides.size());
   for (const ViewSide& side : sides) detectors.push_back(side.run->detector());
   warn_of_radii(detectors, trace.reader, options.trace, verbosity);
 

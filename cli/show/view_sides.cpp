@@ -29,6 +29,7 @@ std::vector<SideChoice> side_choices(const ViewOptions& options) {
     const std::vector<std::string> names = parse_names(options.detectors, detector_names(), "--detectors");
     require_two(names, "--detectors", "--detectors paper,cpu");
     std::vector<SideChoice> choices;
+    choices.reserve(names.size());
     for (const std::string& name : names) choices.push_back({name, name, maps});
     return choices;
   }
@@ -74,6 +75,7 @@ std::vector<std::string> side_titles(const std::vector<ViewSide>& sides) {
 std::vector<std::uint64_t> pack_frames(OpenTrace& trace, const std::vector<ViewSide>& sides, PagePacker& packer,
                                        const ViewOptions& options) {
   std::vector<SeenRun*> runs;
+  runs.reserve(sides.size());
   for (const ViewSide& side : sides) runs.push_back(side.run.get());
   Progress progress("Looking for contacts", options.common.verbosity());
   auto contacts = pack_trace(trace.reader, runs, packer, [&](double share) { return progress.update(share); });
