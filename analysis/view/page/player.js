@@ -54,12 +54,13 @@ class Player {
   describe() {
     const {head, rows, people, colliders} = this.trace;
     const contacts = this.trace.sides.map((side) => side.reduce((sum, person) => sum + person.contact_row.length, 0));
+    const inWords = (count) => count.toLocaleString("en");
     const alone = people.reduce((sum, person) => sum + person.alone.reduce((a, b) => a + b, 0), 0);
     byId("sides").append(...head.sides.map((title) => element("span", title)));
-    const named = (count, noun) => `${count.toLocaleString("en")} ${noun}${count === 1 ? "" : "s"}`;
+    const named = (count, noun) => `${inWords(count)} ${noun}${count === 1 ? "" : "s"}`;
     byId("about").textContent = [
       named(rows, "frame"), named(colliders.id.length, "collider"),
-      head.sides.length > 1 ? `${contacts.map((count) => count.toLocaleString("en")).join(" and ")} contacts, ${alone.toLocaleString("en")} on one side alone`
+      head.sides.length > 1 ? `${contacts.map(inWords).join(" and ")} contacts, ${inWords(alone)} on one side alone`
         : named(contacts[0], "contact"),
       ...head.about].join(" · ");
     byId("precision").textContent =
