@@ -44,8 +44,8 @@ struct MissedPage {
 };
 
 /// Makes the page of 'vestige view' on which two sides stand beside each other, over the whole scene, sampled as
-/// `sampling` says. Contacts that only one side has are marked in red. `progress`
-/// receives the share done; if it returns false, nothing is returned.
+/// `sampling` says. Contacts that only one side has are marked in red. `progress` receives the share done; if it
+/// returns false, nothing is returned.
 std::optional<MissedPage> missed_page(const MovingScene& scene, const ActuatorMap& map, const MissedSampling& sampling,
                                       std::vector<MissedSide> sides, const std::function<bool(double)>& progress);
 

@@ -326,10 +326,9 @@ nlohmann::ordered_json results_json(const AccuracyOptions& options, const SceneC
           {"complete", !interrupted()}};
 }
 
-/// Writes the page of what is missed, or removes that of an earlier run.
+/// Writes the page of what is missed to `path`, or removes that of an earlier run.
 void show_missed(const Measurement& measurement, std::span<const AccuracyScene> scenes,
-                 std::span<const SceneChoice> choices, const AccuracyOptions& options) {
-  const std::string path = options.output + "/missed.html";
+                 std::span<const SceneChoice> choices, const std::string& path, const AccuracyOptions& options) {
   const bool wanted = !options.no_figure && !interrupted();
   const std::string what = wanted ? measurement.write_missed(scenes, choices, path) : "";
   if (what.empty()) {
@@ -395,7 +394,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
          options.common.verbosity());
   print_summary(accuracy_table(scenes, contestants, options.tolerance_ms / 1e3), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", errors_path, run_path), {options.common.json}, options.common);
-  show_missed(measurement, scenes, choices, options);
+  show_missed(measurement, scenes, choices, page_path, options);
   draw_or_remove_figure("accuracy", "accuracy", options.output, !options.no_figure && !interrupted(), options.common);
   if (interrupted()) invocation.exit_code = kDataLost;
 }

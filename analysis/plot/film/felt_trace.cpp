@@ -1,7 +1,5 @@
 #include "analysis/plot/film/felt_trace.hpp"
 
-#include <fmt/format.h>
-
 #include "analysis/plot/studio/subject_run.hpp"
 
 namespace vestige::plot {
@@ -32,12 +30,7 @@ bool FeltTrace::next() {
 }
 
 std::vector<std::string> FeltTrace::notes() const {
-  std::vector<std::string> notes;
-  const auto& people = trace_.people();
-  for (std::size_t i = 0; i < people.size(); ++i)
-    if (const std::string note = run_.non_finite(i); !note.empty())
-      notes.push_back(people.size() > 1 ? fmt::format("person {}: {}", i + 1, note) : note);
-  return notes;
+  return notes_of(run_, trace_.people().size());
 }
 
 void FeltTrace::note_contacts(std::size_t person, const ContactRow& row) {

@@ -106,9 +106,7 @@ std::optional<std::string> map_view(const std::filesystem::path& batch, const Re
                            fmt::format("detector {}, {}", run.detector(), vestige::name_of(data.method)),
                            "vestige " + commit().substr(0, 10)};
   for (std::string& damage : damage_of(reader, telling.trace->given)) content.warn(std::move(damage));
-  for (std::size_t i = 0; i < people.size(); ++i)
-    if (const std::string note = run.non_finite(i); !note.empty())
-      content.warn(people.size() == 1 ? note : fmt::format("person {}: {}", i + 1, note));
+  for (std::string& note : notes_of(run, people.size())) content.warn(std::move(note));
   return make_page(telling.trace->name, content);
 }
 

@@ -1,8 +1,9 @@
 #include "analysis/plot/studio/subject_run.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "detector/depth/depth_detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
@@ -31,6 +32,14 @@ SeenRun make_run(std::span<const Subject> people, std::span<const std::uint32_t>
             for (const Subject& person : people) detectors.push_back(make_detector(person, all, method));
             return detectors;
           }};
+}
+
+std::vector<std::string> notes_of(const SeenRun& run, std::size_t people) {
+  std::vector<std::string> notes;
+  for (std::size_t i = 0; i < people; ++i)
+    if (const std::string note = run.non_finite(i); !note.empty())
+      notes.push_back(people > 1 ? fmt::format("person {}: {}", i + 1, note) : note);
+  return notes;
 }
 
 }  // namespace vestige::plot

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "analysis/plot/studio/subject.hpp"
 #include "analysis/run/seen_run.hpp"
@@ -14,5 +17,8 @@ namespace vestige::plot {
 /// `planes` as in `SeenRun`.
 SeenRun make_run(std::span<const Subject> people, std::span<const std::uint32_t> collider_ids, const LawFlags& law,
                  Method method, PlaneSet planes);
+
+/// Says what was not finite in the frames so far, and of which of so many `people`, a sentence for each.
+std::vector<std::string> notes_of(const SeenRun& run, std::size_t people);
 
 }  // namespace vestige::plot

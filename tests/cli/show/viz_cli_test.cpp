@@ -15,6 +15,7 @@
 #include "tests/support/command_line.hpp"
 #include "tests/support/duty_rows.hpp"
 #include "tests/support/npm.hpp"
+#include "tests/traces/viz/viz_json.hpp"
 #include "traces/scene/reference_skinning.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
@@ -22,22 +23,12 @@ namespace vestige {
 namespace {
 
 using nlohmann::json;
+using test::matrix_of;
+using test::vector_of;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::UnorderedElementsAre;
-
-glm::dvec3 vector_of(const json& v) {
-  return {v["x"].get<double>(), v["y"].get<double>(), v["z"].get<double>()};
-}
-
-glm::dmat4 matrix_of(const json& transform) {
-  const json& q = transform["rotation"];
-  glm::dmat4 matrix = glm::mat4_cast(
-      glm::dquat(q["w"].get<double>(), q["x"].get<double>(), q["y"].get<double>(), q["z"].get<double>()));
-  matrix[3] = glm::dvec4(vector_of(transform["translation"]), 1);
-  return matrix;
-}
 
 /// The frames of a message on /viz/tf, in the world.
 std::map<std::string, glm::dmat4> frames_of(const json& message) {

@@ -11,6 +11,7 @@
 #include "tests/support/npm.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
+#include "tests/traces/viz/viz_json.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 #include "traces/viz/viz_builder.hpp"
 #include "traces/viz/viz_pace.hpp"
@@ -19,23 +20,13 @@ namespace vestige {
 namespace {
 
 using nlohmann::json;
+using test::matrix_of;
+using test::vector_of;
 using ::testing::Contains;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
 using ::testing::UnorderedElementsAre;
-
-glm::dvec3 vector_of(const json& v) {
-  return {v["x"].get<double>(), v["y"].get<double>(), v["z"].get<double>()};
-}
-
-glm::dmat4 matrix_of(const json& transform) {
-  const json& q = transform["rotation"];
-  const glm::dquat rotation(q["w"].get<double>(), q["x"].get<double>(), q["y"].get<double>(), q["z"].get<double>());
-  glm::dmat4 matrix = glm::mat4_cast(rotation);
-  matrix[3] = glm::dvec4(vector_of(transform["translation"]), 1);
-  return matrix;
-}
 
 class VizTest : public ::testing::Test {
  protected:
