@@ -22,6 +22,9 @@ constexpr int kMostInATurn = 1000;  ///< datagrams of each port
 constexpr auto kLongestWay = 200ms;
 constexpr double kFarthestWay_m = 1;
 
+/// How long the others wait before it is said for whom.
+constexpr auto kPatience = 1s;
+
 glm::dvec3 root_of(const Avatar& avatar, const Pose& pose) {
   std::vector<glm::dmat4> world;
   world_matrices(avatar, pose, world);
@@ -71,6 +74,20 @@ void DatagramInput::receive() {
       source.state.take(*datagram);
     }
   }
+  if (!missing_told_) look_for_missing();
+}
+
+/// Says who is waited for, once the others have waited for a while.
+void DatagramInput::look_for_missing() {
+  if (frames() == 0 || has_begun()) return;
+  if (!others_wait_since_) others_wait_since_ = Clock::now();
+  if (Clock::now() < *others_wait_since_ + kPatience) return;
+  missing_told_ = true;
+  for (const Source& source : sources_)
+    if (source.state.frames() == 0)
+      problems_.push_back(fmt::format(
+          "{}: no whole frame has come to this port yet; nobody feels anything before one comes to each port",
+          source.name));
 }
 
 std::uint64_t DatagramInput::frames() const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -78,6 +79,7 @@ class DatagramInput final : public LiveInput {
 
   static std::deque<Source> sources_of(std::span<const LivePort> ports);
   static std::vector<LiveState*> states_of(std::deque<Source>& sources);
+  void look_for_missing();
   void count_superseded();
   void look_for_silence(Source& source, Clock::time_point time);
   void lead(Source& source, Pose& pose, Clock::time_point time, LiveFrame& out) const;
@@ -88,6 +90,8 @@ class DatagramInput final : public LiveInput {
   LiveScene scene_;
   std::uint64_t superseded_ = 0;
   bool has_shown_ = false;
+  std::optional<Clock::time_point> others_wait_since_;  ///< for people who have sent nothing yet
+  bool missing_told_ = false;
   bool clash_told_ = false;
   std::vector<std::string> problems_;  ///< not told yet
 };

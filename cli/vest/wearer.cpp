@@ -53,6 +53,7 @@ void Wearer::still_here(const std::function<void(const std::string&)>& tell) {
     person_.map = std::move(taken->map);
     laws_.use(person_.map, taken->layout);
     ++maps_reloaded_;
+    tell(vest_.map + ": was changed, and is felt as it is now");
     for (const std::string& warning : map_warnings(person_.map, person_, {options_.scene, vest_.map})) tell(warning);
   }
   sender_->still_here();

@@ -148,6 +148,23 @@ TEST_F(ByDatagrams, OfTwoPeopleOneMayFallSilent) {
   EXPECT_EQ(live_.is_silent, std::vector<bool>({false, false}));
 }
 
+TEST_F(ByDatagrams, WhoIsWaitedForIsSaidOnce) {
+  const std::vector<LivePort> ports = {{"vmc://one", {"127.0.0.1", test::free_udp_port()}, avatar_},
+                                       {"vmc://two", {"127.0.0.1", port_}, avatar_}};
+  input_.reset();  // which has the port
+  input_ = std::make_unique<DatagramInput>(ports, PoseShown::kLatest, 500ms);
+  take({});
+  std::this_thread::sleep_for(1100ms);
+  take({pose_at(0.1)});
+  EXPECT_THAT(input_->take_problems(), IsEmpty()) << "only the first has come, just now";
+  std::this_thread::sleep_for(1100ms);
+  take({pose_at(0.2)});
+  EXPECT_THAT(input_->take_problems(),
+              ::testing::ElementsAre(HasSubstr("vmc://one: no whole frame has come to this port yet")));
+  take({pose_at(0.3)});
+  EXPECT_THAT(input_->take_problems(), IsEmpty());
+}
+
 TEST_F(ByDatagrams, APoseAfterAPoseAndTheLatestOnDemandAreShownAtOnce) {
   take({pose_at(0.1)});
   x_now();

@@ -85,7 +85,7 @@ TEST_F(StreamToOtherSinks, AMapThatIsEditedWhileItIsFeltIsReadAgainAndABadOneIsN
           "kill -INT $stream; wait $stream");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_EQ(json_in("stream.json")["maps_reloaded"], 1);
-  EXPECT_THAT(outcome.standard_error, HasSubstr("map.png"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("map.png: was changed, and is felt as it is now"));
   EXPECT_THAT(outcome.standard_error, HasSubstr("The previous map stays in use"));
   const std::vector<Row> log = read_log(folder_ / "log.csv");
   ASSERT_FALSE(log.empty());
