@@ -83,13 +83,14 @@ void make_folder(const std::filesystem::path& folder) {
 
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite) {
   if (is_standard_output(path)) return;
-  static_cast<void>(where_it_leads(path));  // throws
+  const auto parent = where_it_leads(path).parent_path();
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status)) {
-    const auto parent = path.parent_path();
     if (!parent.empty() && !std::filesystem::is_directory(parent, ignored))
       throw Error(path.string(), fmt::format("there is no folder '{}'", parent.string()), "create it first");
+    if (::faccessat(AT_FDCWD, parent.empty() ? "." : parent.c_str(), W_OK | X_OK, AT_EACCESS) != 0)
+      throw system_error(path, "could not be written", errno);
     return;
   }
   if (std::filesystem::is_directory(status)) throw Error(path.string(), "is a folder", "name a file");

@@ -55,7 +55,8 @@ std::filesystem::path where_it_leads(std::filesystem::path path);
 /// Returns the permissions of a new file: 0666 without the bits of the process's umask.
 mode_t new_file_mode();
 
-/// Throws `Error` if `path` exists and may not be overwritten. Call this before long work, not after it.
+/// Throws `Error` if `path` exists and may not be overwritten, or lies where no file may be made. Call this before long
+/// work, not after it.
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite);
 
 /// Creates `folder` and its parents if they do not exist. Throws `Error`.

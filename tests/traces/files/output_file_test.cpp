@@ -113,6 +113,23 @@ TEST(OutputFile, RefusesLinksInACircleAndFilesWithoutAName) {
   EXPECT_EQ(entries_in(folder.path()), 2U);
 }
 
+TEST(OutputFile, IsRefusedBeforeTheWorkWhereNoFileMayBeMade) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+  const test::TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
+  constexpr uid_t kNobody = 65534;
+  ASSERT_EQ(::seteuid(kNobody), 0);
+  std::string message;
+  try {
+    refuse_overwrite(folder / "a", Overwrite::kRefuse);
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  ASSERT_EQ(::seteuid(0), 0);
+  EXPECT_THAT(message, HasSubstr("could not be written: Permission denied"));
+  EXPECT_NO_THROW(refuse_overwrite(folder / "a", Overwrite::kRefuse));
+}
+
 TEST(OutputFile, ReportsAFullDisk) {
   OutputFile file("/dev/full", Overwrite::kAllow);
   file.write("x");
