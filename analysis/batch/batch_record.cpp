@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "traces/base/number_text.hpp"
+
 namespace vestige {
 
 nlohmann::ordered_json trace_record(const BatchTrace& trace, const nlohmann::ordered_json& item,
@@ -54,8 +56,9 @@ std::vector<std::string> losses_of(const nlohmann::ordered_json& item) {
   const auto frames = item["non_finite_frames"].get<std::uint64_t>();
   const auto segments = item["non_finite_segments"].get<std::uint64_t>();
   if (frames + segments != 0)
-    losses.push_back(fmt::format("{}: {} poses and the ends of {} segments are not finite; they fired nothing",
-                                 item["trace"].get<std::string>(), frames, segments));
+    losses.push_back(fmt::format("{}: {} and the ends of {} are not finite; they fired nothing",
+                                 item["trace"].get<std::string>(), counted(frames, "pose"),
+                                 counted(segments, "segment")));
   return losses;
 }
 

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 
+#include "traces/base/number_text.hpp"
+
 namespace vestige {
 
 std::string describe_non_finite(std::uint64_t frames, std::uint64_t segments, std::optional<std::uint64_t> first) {
   if (!first) return "";
-  return fmt::format("{} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
-                     frames, segments, *first);
+  return fmt::format("{} and the ends of {} are not finite, the first in frame {}; they fired nothing",
+                     counted(frames, "pose"), counted(segments, "segment"), *first);
 }
 
 SeenRun::SeenRun(const Input& input, const MakeDetectors& make)

@@ -59,7 +59,7 @@ int run(int argc, char** argv) {
   }
   if (const auto exit_code = vestige::cli::parse_command_line(app, "figure", argc, argv)) return *exit_code;
   if (options.output == "-")
-    throw vestige::UsageError("-o -", "figures are not written to standard output", "name OUT");
+    throw vestige::UsageError("-o -", "figures are not written to standard output", "name a file: -o FILE");
   return std::ranges::find_if(verbs, [](const auto& verb) { return verb.command->parsed(); })->draw(options);
 }
 

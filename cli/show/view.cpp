@@ -160,6 +160,7 @@ void add_view(CLI::App& program, Invocation& invocation) {
       verb->add_option("--maps", options->maps, "Show the body with two maps, side by side: two of these")
           ->type_name("[K=]FILE.png|LAYOUT|none")
           ->expected(2)
+          ->delimiter(',')
           ->allow_extra_args(false)
           ->group("Side by side")
           ->excludes(map);

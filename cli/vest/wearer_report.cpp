@@ -61,8 +61,8 @@ nlohmann::ordered_json link_of(const Wearer& wearer) {
 std::string summary_of(const Wearer& wearer, std::string_view from) {
   const SenderStatistics& sender = wearer.sent();
   const OpenSink& sink = wearer.sink();
-  std::string text = fmt::format("sent {} frames, {} of them changes; {} changes superseded by newer ones", sender.sent,
-                                 sender.changes, sender.superseded);
+  std::string text = fmt::format("sent {}, {} of them changes; {} superseded by newer ones",
+                                 counted(sender.sent, "frame"), sender.changes, counted(sender.superseded, "change"));
   text += sink.sink().acknowledges() ? fmt::format("; {} acknowledged\n", sender.acknowledged) : "\n";
   if (sender.written.count() != 0) text += fmt::format("{} to last byte written: {}\n", from, describe(sender.written));
   if (sender.acknowledged_after.count() != 0)
@@ -81,18 +81,18 @@ int report_losses(const Wearer& wearer, const FeltPerson& person, Verbosity verb
     code = kDataLost;
   };
   if (person.non_finite_frames + person.non_finite_segments != 0)
-    say(fmt::format("{} poses and the ends of {} segments are not finite; they fired nothing", person.non_finite_frames,
-                    person.non_finite_segments));
+    say(fmt::format("{} and the ends of {} are not finite; they fired nothing",
+                    counted(person.non_finite_frames, "pose"), counted(person.non_finite_segments, "segment")));
   if (sender.receive_errors + sender.overruns != 0)
-    say(fmt::format("the board counted {} damaged frames and lost bytes {} times; check the wires and the baud",
-                    sender.receive_errors, sender.overruns));
+    say(fmt::format("the board counted {} and lost bytes {}; check the wires and the baud",
+                    counted(sender.receive_errors, "damaged frame"), counted(sender.overruns, "time")));
   if (sender.output_failures != 0)
     say(
         fmt::format("the board's output chips did not answer it, by {}; all actuators were off meanwhile; check the "
                     "wires SDA and SCL, the chips' addresses and their supply",
                     counted(sender.output_failures, "answer")));
   if (sender.fail_safes != 0)
-    say(fmt::format("the board switched itself off or restarted {} times", sender.fail_safes));
+    say(fmt::format("the board switched itself off or restarted {}", counted(sender.fail_safes, "time")));
   if (const std::string radio = sink.radio_failure(); !radio.empty()) say(radio);
   const bool acknowledges = sink.sink().acknowledges();
   if (acknowledges && sender.acknowledged != sender.sent)

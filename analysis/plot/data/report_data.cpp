@@ -303,6 +303,9 @@ ReportData read_report(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder))
     throw Error(folder.string(), std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder",
                 "name the folder that 'vestige batch -o' wrote");
+  if (std::filesystem::exists(folder / "accuracy.json"))
+    throw Error(folder.string(), "is of 'vestige accuracy', which ranks no maps: accuracy.png and missed.html show it",
+                "name the folder that 'vestige batch -o' wrote");
   if (!std::filesystem::exists(folder / "ranking.json"))
     throw Error(folder.string(), "has no ranking.json: no batch has finished here",
                 std::filesystem::exists(folder / "run.json") ? fmt::format("{}; run.json says what failed", kGoOn)

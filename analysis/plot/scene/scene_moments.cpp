@@ -51,7 +51,7 @@ void require_order(double from_s, double to_s) {
 void refuse_empty_span(std::string_view name, double first_s, double last_s) {
   throw UsageError("--from, --to",
                    fmt::format("{} lasts from {} s to {} s, and has no frame in that time", name, first_s, last_s),
-                   "choose a time within the trace");
+                   "choose a time within the trace, that is at least as long as from one frame to the next");
 }
 
 std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, std::vector<FrameTime> times,

@@ -315,6 +315,10 @@ TEST_F(ReportTest, NamesWhatIsWrongWithAFolderAndWritesNothing) {
   test::write_text(folder_ / "batch/run.json", run_.dump());
   EXPECT_THAT(run("report batch").standard_error, HasSubstr("run.json says what failed"));
 
+  std::filesystem::create_directory(folder_ / "measured");
+  test::write_text(folder_ / "measured/accuracy.json", "{}");
+  EXPECT_THAT(run("report measured").standard_error, HasSubstr("is of 'vestige accuracy', which ranks no maps"));
+
   const nlohmann::json good = ranking_;
   ranking_["ranking"][1]["headline"]["mean"] = "far";
   EXPECT_THAT(report().standard_error, AllOf(HasSubstr("ranking.json"), HasSubstr("ranking[1].headline.mean")));

@@ -389,7 +389,8 @@ TEST_F(View, RefusesSidesThatCannotBe) {
                                                         {"--detectors cpu,exact --detector cpu", "excludes"},
                                                         {"--maps paper6 torso40 --map none", "excludes"},
                                                         {"--maps paper6 -", "--maps: a map cannot come from"},
-                                                        {"--maps paper6 paper6", "the same"}})
+                                                        {"--maps paper6 paper6", "the same"},
+                                                        {"--maps paper6,paper6", "the same"}})
     expect_failure("vestige view small.mcap " + flags, 2, {words}, "small.html");
   expect_failure("vestige view small.mcap --maps paper6 nowhere.png", 1, {"nowhere.png"}, "small.html");
 }
