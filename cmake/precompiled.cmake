@@ -10,4 +10,4 @@ foreach(name vestige_precompiled vestige_precompiled_cold)
     <vector> <fmt/format.h> <glm/geometric.hpp> <glm/gtc/quaternion.hpp> <glm/mat4x4.hpp> <glm/vec3.hpp>
     <nlohmann/json.hpp>)
 endforeach()
-target_compile_options(vestige_precompiled_cold PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
+target_compile_options(vestige_precompiled_cold PRIVATE ${vestige_cold_level})
