@@ -166,6 +166,10 @@ void add_view(CLI::App& program, Invocation& invocation) {
           ->excludes(map);
   verb->add_option("--detectors", options->detectors, "Show what two detectors find, side by side: two names")
       ->type_name("A,B")
+      ->expected(1, 2)
+      ->take_all()  // so that `side_choices` refuses any other number
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->group("Side by side")
       ->excludes(maps)
       ->excludes(verb->get_option("--detector"));

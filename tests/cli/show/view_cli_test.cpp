@@ -367,6 +367,19 @@ TEST_F(View, MarksWhatOneDetectorMisses) {
   EXPECT_THAT(same[0]["about"].get<std::string>(), HasSubstr("0 on one side alone"));
 }
 
+TEST_F(View, TakesTwoSidesHoweverTheyAreWritten) {
+  record_small();
+  const auto sides_of = [&](const std::string& flags) {
+    return json_of("vestige view -q --force -o page.html " + flags + " --json -")["sides"];
+  };
+  const json sides = sides_of("--detectors cpu,boxes small.mcap");
+  ASSERT_EQ(sides.size(), 2U);
+  EXPECT_EQ(sides[1]["title"], "boxes");
+  EXPECT_EQ(sides_of("small.mcap --detectors cpu boxes"), sides);
+  EXPECT_EQ(sides_of("small.mcap --maps 1=paper6 none")[0]["title"], "paper6") << "there is one person";
+  EXPECT_EQ(run("vestige view -q --force small.mcap --detectors decimated,cpu --keep 0.3").exit_code, 0);
+}
+
 TEST_F(View, AccuracyShowsWhatIsMissed) {
   const test::Outcome measured =
       run("vestige accuracy --detector cpu,boxes --method static --colliders swarm,still --count 20 --duration 0.4 "
@@ -381,16 +394,20 @@ TEST_F(View, AccuracyShowsWhatIsMissed) {
 
 TEST_F(View, RefusesSidesThatCannotBe) {
   record_small();
-  for (const auto& [flags, words] :
-       std::vector<std::pair<std::string, std::string>>{{"--detectors cpu", "two sides"},
-                                                        {"--detectors cpu,exact,boxes", "two sides"},
-                                                        {"--detectors cpu,cqu", "did you mean 'cpu'"},
-                                                        {"--detectors cpu,exact --maps paper6 torso40", "excludes"},
-                                                        {"--detectors cpu,exact --detector cpu", "excludes"},
-                                                        {"--maps paper6 torso40 --map none", "excludes"},
-                                                        {"--maps paper6 -", "--maps: a map cannot come from"},
-                                                        {"--maps paper6 paper6", "the same"},
-                                                        {"--maps paper6,paper6", "the same"}})
+  for (const auto& [flags, words] : std::vector<std::pair<std::string, std::string>>{
+           {"--detectors cpu", "two sides"},
+           {"--detectors cpu,exact,boxes", "two sides"},
+           {"--detectors cpu,cqu", "did you mean 'cpu'"},
+           {"--detectors cpu,exact --maps paper6 torso40", "excludes"},
+           {"--detectors cpu,exact --detector cpu", "excludes"},
+           {"--maps paper6 torso40 --map none", "excludes"},
+           {"--maps paper6 -", "--maps: a map cannot come from"},
+           {"--maps paper6 paper6", "the same"},
+           {"--maps paper6,paper6", "the same"},
+           {"--maps paper6 1=paper6", "the same"},
+           {"--detectors cpu cpu", "named twice"},
+           {"--detectors boxes,cpu --keep 0.5", "--detectors boxes,cpu"},
+           {"--detectors decimated,paper --method carried", "choose the detector geometry, compute or cpu"}})
     expect_failure("vestige view small.mcap " + flags, 2, {words}, "small.html");
   expect_failure("vestige view small.mcap --maps paper6 nowhere.png", 1, {"nowhere.png"}, "small.html");
 }
