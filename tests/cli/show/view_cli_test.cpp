@@ -105,6 +105,16 @@ TEST_F(View, DrawsTheBodyAndStandsStillWhereTheReaderWantsNoMotion) {
   EXPECT_EQ(seen[0], seen[1]) << "nothing moves";
 }
 
+TEST_F(View, SaysHowContactsAreFoundAndFelt) {
+  make("--method ccd --surface mapped --hold 40 --json view.json");
+  EXPECT_THAT(browse({{"steps", {kSee}}})[0]["about"].get<std::string>(),
+              HasSubstr("detector cpu · method ccd · surface mapped · law binary, hold 40 ms"));
+  const json report = json_in("view.json");
+  EXPECT_EQ(report["method"], "ccd");
+  EXPECT_EQ(report["surface"], "mapped");
+  EXPECT_EQ(report["law"], json({{"name", "binary"}, {"hold_ms", 40}}));
+}
+
 TEST_F(View, PlaysToTheEndWhereTheReaderDoesNotMind) {
   make("", "--count 40 --duration 0.2");
   const json seen = browse({{"motion", true}, {"steps", {{{"wait_for", "Play"}}, kSee}}});
