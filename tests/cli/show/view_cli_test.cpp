@@ -406,6 +406,9 @@ TEST_F(View, AccuracyShowsWhatIsMissed) {
   const json seen = browse({{"steps", {kSee, press("d")}}}, "a/missed.html");
   EXPECT_EQ(seen[0]["title"], "What cpu, static misses at 90 Hz in still");
   EXPECT_EQ(seen[0]["sides"], json({"cpu, static", "cpu, ccd"}));
+  EXPECT_THAT(seen[0]["about"].get<std::string>(),
+              HasSubstr("contacts of each frame, where accuracy's table counts events of 1 seed against true ones at "
+                        "4000 Hz"));
   EXPECT_THAT(seen[1]["alone"], ElementsAre(HasSubstr("cpu, ccd: ")));
 }
 
