@@ -104,6 +104,23 @@ constexpr Field kView[] = {
     {"complete", "", "false: the trace is damaged"},
 };
 
+constexpr Field kViz[] = {
+    {"trace", "", "the trace that was read"},
+    {"output", "", "the trace that was written"},
+    {"detector", "", "what found the contacts"},
+    {"frames", "", "frames of the trace"},
+    {"contacts", "", "contacts that were found"},
+    {"bytes_before", "bytes", "size of the trace that was read"},
+    {"bytes", "bytes", "size of the trace that was written"},
+    {"complete", "", "false: the trace is damaged"},
+};
+
+// How `view` and `viz` find contacts.
+constexpr Field kChoices[] = {
+    {"method", "", "static, carried or ccd: how the body's own motion counts (CONTRACT)"},
+    {"surface", "", "all: skin without an actuator hides what lies behind it; mapped: it does not"},
+};
+
 constexpr Field kLaw[] = {
     {"name", "", "intensity law"},
     {"hold_ms", "ms", "how long an actuator runs on after a contact"},
@@ -328,7 +345,11 @@ FieldGroups live_fields() {
 }
 
 FieldGroups view_fields() {
-  return {{"", kView}, {"", origin_fields()}};
+  return {{"", kView}, {"", kChoices}, {"law", kLaw}, {"", origin_fields()}};
+}
+
+FieldGroups viz_fields() {
+  return {{"", kViz}, {"", kChoices}, {"law", kLaw}, {"", origin_fields()}};
 }
 
 FieldGroups vest_check_fields() {

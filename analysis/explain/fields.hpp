@@ -27,6 +27,7 @@ FieldGroups replay_fields();
 FieldGroups stream_fields();
 FieldGroups live_fields();
 FieldGroups view_fields();
+FieldGroups viz_fields();
 FieldGroups vest_check_fields();
 
 // Frequency.
@@ -68,7 +69,6 @@ FieldGroups doctor_fields();
 FieldGroups recover_fields();
 FieldGroups rewriting_fields();
 FieldGroups merge_fields();
-FieldGroups viz_fields();
 FieldGroups viewer_layout_fields();
 FieldGroups cat_fields();
 FieldGroups export_fields();

@@ -219,19 +219,6 @@ constexpr Field kMerge[] = {
     {"complete", "", "false: a part is damaged"},
 };
 
-constexpr Field kViz[] = {
-    {"trace", "", "the trace that was read"},
-    {"output", "", "the trace that was written"},
-    {"detector", "", "what found the contacts"},
-    {"law", "", "what made duties of them"},
-    {"hold_ms", "ms", "how long a contact is felt"},
-    {"frames", "", "frames of the trace"},
-    {"contacts", "", "contacts that were found"},
-    {"bytes_before", "bytes", "size of the trace that was read"},
-    {"bytes", "bytes", "size of the trace that was written"},
-    {"complete", "", "false: the trace is damaged"},
-};
-
 constexpr Field kViewerLayout[] = {
     {"layout/direction", "", "row: the body stands left of the other panels"},
     {"layout/*", "", "where the panels stand"},
@@ -309,10 +296,6 @@ FieldGroups rewriting_fields() {
 
 FieldGroups merge_fields() {
   return {{"", kMerge}, {"", origin_fields()}};
-}
-
-FieldGroups viz_fields() {
-  return {{"", kViz}, {"", origin_fields()}};
 }
 
 FieldGroups viewer_layout_fields() {

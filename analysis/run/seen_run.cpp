@@ -53,6 +53,11 @@ bool SeenRun::any_feels() const {
   return std::ranges::any_of(makers_, [](const auto& maker) { return maker.has_value(); });
 }
 
+nlohmann::ordered_json SeenRun::law() const {
+  const auto maker = std::ranges::find_if(makers_, [](const auto& one) { return one.has_value(); });
+  return maker == makers_.end() ? nlohmann::ordered_json() : (*maker)->to_json();
+}
+
 std::string SeenRun::non_finite(std::size_t person) const {
   const FrameBuilder& built = run_->builder(person);
   return describe_non_finite(built.non_finite_frames(), built.non_finite_segments(), built.first_non_finite());

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -61,6 +62,8 @@ class SeenRun {
   std::string detector() const { return detectors_.front()->name(); }
   /// Returns whether anybody has an actuator.
   bool any_feels() const;
+  /// Returns the law of the first person with an actuator, as reports have it; null if nobody has one.
+  nlohmann::ordered_json law() const;
   /// Returns `describe_non_finite` of a person in all frames so far.
   std::string non_finite(std::size_t person) const;
 

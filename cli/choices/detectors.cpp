@@ -24,11 +24,14 @@ constexpr const char* kSkipHelp =
     "whole avatar and consider every pair of segment and triangle";
 
 /// Returns why --keep would change nothing, or "".
-std::string refusal_of_keep(const CLI::Option& detectors) {
+std::string refusal_of_keep(const CLI::App& verb) {
+  const CLI::Option* detectors = verb.get_option_no_throw("--detectors");  // of `view`, in the place of --detector
+  if (detectors == nullptr || detectors->empty()) detectors = verb.get_option("--detector");
   const std::string names =
-      detectors.empty() ? detectors.get_default_str() : fmt::format("{}", fmt::join(detectors.results(), ","));
+      detectors->empty() ? detectors->get_default_str() : fmt::format("{}", fmt::join(detectors->results(), ","));
   if (names.find("decimated") != std::string::npos) return "";
-  return fmt::format("changes nothing for --detector {}: only decimated keeps a share of the triangles", names);
+  return fmt::format("changes nothing for {} {}: only decimated keeps a share of the triangles", detectors->get_name(),
+                     names);
 }
 
 void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
@@ -41,7 +44,7 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
       ->type_name("SHARE")
       ->capture_default_str()
       ->check(help::between(1e-6, 1))
-      ->check([&verb](const std::string&) { return refusal_of_keep(*verb.get_option("--detector")); });
+      ->check([&verb](const std::string&) { return refusal_of_keep(verb); });
   add("--surface", choice.surface,
       "all: skin without an actuator hides the skin behind it; mapped: colliders pass through skin without an actuator")
       ->capture_default_str()
@@ -170,7 +173,7 @@ std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, SharedCont
   if (name != "paper") throw std::logic_error(fmt::format("nothing here makes the detector '{}'", name));
   if (options.method != Method::kStatic)
     throw UsageError("--method", fmt::format("the published method does not support '{}'", choice.method),
-                     "choose --detector geometry, compute or cpu, or --method static");
+                     "choose the detector geometry, compute or cpu, or --method static");
   return make_paper_detector(context.get(), avatar, map, options);
 }
 

@@ -26,6 +26,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/scene/radius.hpp"
 #include "traces/scene/trace.hpp"
@@ -142,6 +143,12 @@ std::vector<SceneChoice> scene_choices(const AccuracyOptions& options) {
   return choices;
 }
 
+/// Why the page of what is missed has other numbers than the table.
+std::string unlike_the_table(const MostMissed& most) {
+  return fmt::format("contacts of each frame, where accuracy's table counts events of {} against true ones at {:g} Hz",
+                     counted(most.point->seeds, "seed"), most.scene->truth_rate_hz);
+}
+
 /// Enough for any scene in which something happens.
 constexpr std::uint64_t kMostSeeds = 1000;
 
@@ -211,7 +218,8 @@ class Measurement {
                       std::move(sides), [&](double share) { return progress.update(share); });
       if (!page) return "";
       if (page->contacts[0] == page->contacts[1] && seed != most->scene->seeds.back()) continue;
-      page->content.head["about"] = {fmt::format("seed {}", seed), "vestige " + commit().substr(0, 10)};
+      page->content.head["about"] = {fmt::format("seed {}", seed), unlike_the_table(*most),
+                                     "vestige " + commit().substr(0, 10)};
       OutputFile file(path, options_.common.overwrite());
       file.write(make_page(what, page->content));
       file.commit();

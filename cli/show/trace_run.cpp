@@ -19,6 +19,12 @@ SeenRun make_run(std::span<const TracedPerson> people, const DetectorChoice& cho
           [&](PlaneSet all) { return make_detectors(choice.detector, choice, people, all); }};
 }
 
+void add_choices(nlohmann::ordered_json& report, const DetectorChoice& choice, const SeenRun& run) {
+  report["method"] = choice.method;
+  report["surface"] = choice.surface;
+  if (run.any_feels()) report["law"] = run.law();
+}
+
 std::vector<std::string> notes_of(const SeenRun& run, const OpenTrace& trace) {
   std::vector<std::string> notes;
   for (std::size_t i = 0; i < trace.people.size(); ++i)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ std::vector<MappedPerson> mapped(std::span<const TracedPerson> people);
 /// or `Error` if detector or law do not suit them.
 SeenRun make_run(std::span<const TracedPerson> people, const DetectorChoice& choice, const LawFlags& law,
                  PlaneSet planes, OpenTrace& trace, const std::string& file);
+
+/// Adds to a report how contacts are found and, if anybody has an actuator, felt: `method`, `surface` and `law`.
+void add_choices(nlohmann::ordered_json& report, const DetectorChoice& choice, const SeenRun& run);
 
 /// Returns sentences about what was not finite, at most one about each person.
 std::vector<std::string> notes_of(const SeenRun& run, const OpenTrace& trace);

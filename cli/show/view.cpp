@@ -36,11 +36,19 @@ std::string output_path(const ViewOptions& options) {
   return page.string() + ".html";
 }
 
+/// The run of the first side on which anybody has an actuator, otherwise of the first.
+const SeenRun& felt_run(const std::vector<ViewSide>& sides) {
+  const auto felt = std::ranges::find_if(sides, [](const ViewSide& side) { return side.run->any_feels(); });
+  return felt == sides.end() ? *sides.front().run : *felt->run;
+}
+
 /// What the page says below its title.
 std::vector<std::string> about(const ViewOptions& options, const std::vector<ViewSide>& sides) {
   std::vector<std::string> texts;
   if (options.detectors.empty()) texts.push_back("detector " + sides.front().run->detector());
-  if (std::ranges::any_of(sides, [](const ViewSide& side) { return side.run->any_feels(); }))
+  texts.push_back("method " + options.choice.method);
+  if (options.choice.surface != "all") texts.push_back("surface " + options.choice.surface);
+  if (felt_run(sides).any_feels())
     texts.push_back(fmt::format("law {}, hold {} ms", options.law.law, options.law.hold_ms));
   texts.push_back("vestige " + commit().substr(0, 10));
   return texts;
@@ -123,15 +131,15 @@ void run_view(const ViewOptions& options, Invocation& invocation) {
   print_summary(fmt::format("{}: {} and {}, {:.1f} MB\n", output, counted(trace.reader.frame_count(), "frame"),
                             fmt::join(counts, ", "), static_cast<double>(page.size()) / 1e6),
                 {output, options.common.json}, options.common);
-  write_json(options.common.json,
-             with_provenance(invocation.argv, {{"trace", options.trace},
-                                               {"output", output},
-                                               {"frames", trace.reader.frame_count()},
-                                               {"sides", std::move(seen)},
-                                               {"bytes", page.size()},
-                                               {"error_mm", content.head["error_mm"]},
-                                               {"complete", trace.reader.complete()}}),
-             options.common);
+  nlohmann::ordered_json report = {{"trace", options.trace},
+                                   {"output", output},
+                                   {"frames", trace.reader.frame_count()},
+                                   {"sides", std::move(seen)},
+                                   {"bytes", page.size()},
+                                   {"error_mm", content.head["error_mm"]},
+                                   {"complete", trace.reader.complete()}};
+  add_choices(report, options.choice, felt_run(sides));
+  write_json(options.common.json, with_provenance(invocation.argv, report), options.common);
   invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
   for (const std::string& note : notes) {
     warn(fmt::format("{}: {}", options.trace, note), verbosity);
@@ -166,6 +174,10 @@ void add_view(CLI::App& program, Invocation& invocation) {
           ->excludes(map);
   verb->add_option("--detectors", options->detectors, "Show what two detectors find, side by side: two names")
       ->type_name("A,B")
+      ->expected(1, 2)
+      ->take_all()  // so that `side_choices` refuses any other number
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->group("Side by side")
       ->excludes(maps)
       ->excludes(verb->get_option("--detector"));

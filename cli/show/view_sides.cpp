@@ -18,33 +18,48 @@ void require_two(const std::vector<std::string>& values, const std::string& flag
   if (values.size() != 2)
     throw UsageError(flag, fmt::format("names {}, but a page has two sides", counted(values.size(), "value")),
                      "write " + example);
-  if (values[0] == values[1]) throw UsageError(flag, "both sides would be the same", "write " + example);
+}
+
+bool are_same(const PersonValue& a, const PersonValue& b) {
+  return a.person.value_or(0) == b.person.value_or(0) && a.value == b.value;
+}
+
+std::vector<SideChoice> sides_of_detectors(const ViewOptions& options) {
+  const std::vector<std::string> names =
+      parse_names(fmt::format("{}", fmt::join(options.detectors, ",")), detector_names(), "--detectors");
+  require_two(names, "--detectors", "--detectors paper,cpu");
+  std::vector<SideChoice> choices;
+  choices.reserve(names.size());
+  for (const std::string& name : names) choices.push_back({name, name, parse_maps(options.map)});
+  return choices;
+}
+
+std::vector<SideChoice> sides_of_maps(const ViewOptions& options) {
+  const std::string example = "--maps paper6 torso40";
+  require_two(options.maps, "--maps", example);
+  std::vector<SideChoice> choices;
+  choices.reserve(options.maps.size());
+  for (const std::string& map : options.maps)
+    choices.push_back({map, options.choice.detector, parse_maps({map}, kMapsFlag)});
+  if (are_same(choices[0].maps.front(), choices[1].maps.front()))
+    throw UsageError("--maps", "both sides would be the same", "write " + example);
+  return choices;
 }
 
 }  // namespace
 
 std::vector<SideChoice> side_choices(const ViewOptions& options) {
-  const std::vector<PersonValue> maps = parse_maps(options.map);
-  if (!options.detectors.empty()) {
-    const std::vector<std::string> names = parse_names(options.detectors, detector_names(), "--detectors");
-    require_two(names, "--detectors", "--detectors paper,cpu");
-    std::vector<SideChoice> choices;
-    choices.reserve(names.size());
-    for (const std::string& name : names) choices.push_back({name, name, maps});
-    return choices;
-  }
-  if (options.maps.empty()) return {{"", options.choice.detector, maps}};
-  require_two(options.maps, "--maps", "--maps paper6 torso40");
-  std::vector<SideChoice> choices;
-  for (const std::string& map : options.maps)
-    choices.push_back({map, options.choice.detector, parse_maps({map}, kMapsFlag)});
-  return choices;
+  if (!options.detectors.empty()) return sides_of_detectors(options);
+  if (!options.maps.empty()) return sides_of_maps(options);
+  return {{"", options.choice.detector, parse_maps(options.map)}};
 }
 
 std::vector<ViewSide> make_sides(const std::vector<SideChoice>& choices, OpenTrace& trace, const ViewOptions& options) {
   std::vector<ViewSide> sides;
   for (const SideChoice& choice : choices) {
-    ViewSide& side = sides.emplace_back(ViewSide{choice.title, trace.people, nullptr});
+    // "1=" tells nothing about a trace of one person.
+    const std::string& title = options.maps.empty() || trace.people.size() > 1 ? choice.title : choice.maps[0].value;
+    ViewSide& side = sides.emplace_back(ViewSide{title, trace.people, nullptr});
     use_maps(choice.maps, side.people, options.trace, options.common.verbosity(),
              options.maps.empty() ? kMapFlag : kMapsFlag);
     DetectorChoice detector = options.choice;

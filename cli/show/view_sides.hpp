@@ -18,9 +18,9 @@ struct ViewOptions {
   CommonOptions common;
   DetectorChoice choice;
   LawFlags law;
-  std::vector<std::string> map;   ///< values of --map
-  std::vector<std::string> maps;  ///< two values of --maps, or none
-  std::string detectors;          ///< the value of --detectors, or empty
+  std::vector<std::string> map;        ///< values of --map
+  std::vector<std::string> maps;       ///< two values of --maps, or none
+  std::vector<std::string> detectors;  ///< values of --detectors, or none
   std::string trace;
   std::string output;
   bool open = false;

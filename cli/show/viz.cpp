@@ -84,18 +84,13 @@ void run_viz(const VizOptions& options, Invocation& invocation) {
       fmt::format("{}: {} and {}, {} bytes ({} before)\n", options.output, counted(trace.reader.frame_count(), "frame"),
                   counted(copy.contacts(), "contact"), copy.bytes_written(), source.size()),
       outputs, options.common);
-  write_json(options.common.json,
-             with_provenance(invocation.argv, {{"trace", options.trace},
-                                               {"output", options.output},
-                                               {"detector", run.detector()},
-                                               {"law", options.law.law},
-                                               {"hold_ms", options.law.hold_ms},
-                                               {"frames", trace.reader.frame_count()},
-                                               {"contacts", copy.contacts()},
-                                               {"bytes_before", source.size()},
-                                               {"bytes", copy.bytes_written()},
-                                               {"complete", trace.reader.complete() && damages.empty()}}),
-             options.common);
+  nlohmann::ordered_json report = {
+      {"trace", options.trace},        {"output", options.output},
+      {"detector", run.detector()},    {"frames", trace.reader.frame_count()},
+      {"contacts", copy.contacts()},   {"bytes_before", source.size()},
+      {"bytes", copy.bytes_written()}, {"complete", trace.reader.complete() && damages.empty()}};
+  add_choices(report, options.choice, run);
+  write_json(options.common.json, with_provenance(invocation.argv, report), options.common);
   invocation.exit_code = report_damage(trace.reader, options.trace, verbosity);
   warn_of_damage(options.trace, damages, verbosity, damage_of(trace.reader, options.trace));
   if (!damages.empty()) invocation.exit_code = kDataLost;

@@ -74,14 +74,22 @@ class Player {
   showTotals() {
     const rows = [];
     for (const total of this.trace.people.flatMap((person) => person.totals())) {
-      const [collider, most] = [...total.of].reduce((best, one) => (one[1] > best[1] ? one : best), ["", 0]);
-      const by = most === 0 ? "–" : `${collider} (${most})`;
+      const [by, title] = this.mostlyBy(total);
       const cells = [[total.name, ""], [total.on_s.toFixed(3), "n"], [`${total.contacts}`, "n"], [by, "n"]];
-      if (most > 0) cells.title = `collider ${collider}: ${most} of ${total.contacts} contacts`;
+      cells.title = title;
       rows.push(cells);
     }
     byId("totals-title").hidden = rows.length === 0;
     this.fillTable("totals", [["Actuator", ""], ["On, s", "n"], ["Contacts", "n"], ["Mostly by", "n"]], rows, rows.length);
+  }
+
+  /** The collider with the most contacts, if it has more than any other; and the same at length. */
+  mostlyBy({of, contacts}) {
+    if (contacts === 0) return ["–", ""];
+    const most = [...of.values()].reduce((a, b) => Math.max(a, b));
+    const [collider, ...others] = [...of.keys()].filter((id) => of.get(id) === most);
+    if (others.length > 0) return ["several", `${others.length + 1} colliders: ${most} of ${contacts} contacts each`];
+    return [`${collider} (${most})`, `collider ${collider}: ${most} of ${contacts} contacts`];
   }
 
   fillChoices() {

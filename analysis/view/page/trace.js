@@ -105,12 +105,12 @@ class Person {
 
   /** How long each actuator is on in the whole trace, and the contacts that it got, by collider; from most to least. */
   totals() {
-    const {time_s, last_s} = this.scene;
+    const {time_s, end_s} = this.scene;
     const totals = this.changes.map((changes, i) => {
       let on_s = 0;
       changes.row.forEach((row, k) => {
-        const end_s = k + 1 < changes.row.length ? time_s[changes.row[k + 1]] : last_s;
-        if (changes.duty[k] > 0) on_s += end_s - time_s[row];
+        const until_s = k + 1 < changes.row.length ? time_s[changes.row[k + 1]] : end_s;
+        if (changes.duty[k] > 0) on_s += until_s - time_s[row];
       });
       return {name: this.who + this.actuatorName(i + 1), on_s, contacts: 0, of: new Map()};
     });
@@ -244,6 +244,9 @@ class Trace {
   get rows() { return this.frame.length; }
   get first_s() { return this.time_s[0]; }
   get last_s() { return this.time_s[this.rows - 1]; }
+
+  /** The last frame lasts as long as the one before it. */
+  get end_s() { return this.rows > 1 ? 2 * this.last_s - this.time_s[this.rows - 2] : this.last_s; }
 
   /** The frame that is valid at a time: the last that is not later. */
   rowAt(time_s) { return Math.max(0, lastUpTo(this.time_s, time_s)); }

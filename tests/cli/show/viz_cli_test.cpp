@@ -282,6 +282,16 @@ TEST_F(Viz, KeepsWhatIsLeftOfADamagedTrace) {
             json::parse(text_of("vestige replay man.mcap --json -"))["texture_hash"]);
 }
 
+TEST_F(Viz, SaysHowContactsAreFoundAndFelt) {
+  record_small();
+  const json report = json_of("vestige viz small.mcap -o small_seen.mcap --method ccd --hold 40 --json - -q");
+  EXPECT_EQ(report["method"], "ccd");
+  EXPECT_EQ(report["surface"], "all");
+  EXPECT_EQ(report["law"], json({{"name", "binary"}, {"hold_ms", 40}}));
+  record("--map none --duration 0.1", "--json silent.json");
+  EXPECT_FALSE(json_in("silent.json").contains("law")) << "nobody has an actuator";
+}
+
 TEST_F(Viz, RefusesWhatItCannotDo) {
   record_small();
   expect_failure("vestige viz - -o seen.mcap <small.mcap", 2, {"TRACE", "read twice", "name a file"}, "seen.mcap");
