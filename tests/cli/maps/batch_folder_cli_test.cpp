@@ -94,6 +94,26 @@ TEST_F(BatchCommandLine, RunsAgainWhatHasChangedAndNothingElse) {
   EXPECT_EQ(read_text_file(folder_ / "mine/scores.csv"), "precious\n");
 }
 
+TEST_F(BatchCommandLine, ResultsOfAnotherVerbAreNotReplaced) {
+  record({"a.mcap"});
+  const std::string batch = "vestige batch --maps builtin --traces a.mcap --laws binary -o ";
+  for (const std::string other : {"accuracy", "stress"}) {
+    std::filesystem::create_directory(folder_ / other);
+    write(other + "/" + other + ".json", "{}");
+    write(other + "/run.json", "{}");
+    for (const char* force : {"", " --force"})
+      expect_failure(batch + other + force, 1, {other + ": holds results of 'vestige " + other, "name another folder"},
+                     other + "/.lock");
+    EXPECT_EQ(read_text_file(folder_ / other / "run.json"), "{}");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / other / "items"));
+  }
+  ASSERT_EQ(run(batch + "out").exit_code, 0);
+  for (const std::string other : {"accuracy", "stress"})
+    expect_failure("vestige " + other + " --force -o out", 1, {"out: holds results of 'vestige batch'"},
+                   "out/" + other + ".json");
+  EXPECT_TRUE(json_in("out/run.json").contains("batch"));
+}
+
 TEST_F(BatchCommandLine, TwoInOneFolderAreNotLetIn) {
   ASSERT_EQ(run("vestige record --count 3 --rate 100 --duration 10 -o slow.mcap").exit_code, 0);
   const std::string command = "vestige batch --maps builtin --traces slow.mcap --laws binary --detector exact -o out";
