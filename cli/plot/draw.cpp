@@ -275,10 +275,7 @@ int draw_report(const Options& options) {
     cli::Progress progress("report", options.quiet ? cli::Verbosity::kQuiet : cli::Verbosity::kNormal);
     outcome = write_report(batch, settings, [&](double share) { return progress.update(share); });
   }
-  if (outcome.interrupted) {
-    warn(options, "stopped; nothing was written");
-    return cli::kDataLost;
-  }
+  if (outcome.interrupted) throw Error((settings.output / "report.html").string(), cli::kStopped, cli::kStartAgain);
   warn(options, outcome.warnings);
   if (!options.quiet)
     print_message(fmt::format("wrote {}, and {} figures in {}\n", outcome.page.string(), outcome.figures,

@@ -361,6 +361,20 @@ TEST_F(PlotFilmTest, WhatCannotBeDoneIsSaidAndNothingIsWritten) {
   EXPECT_EQ(read_text_file(folder_ / "box-film.webp"), "mine");
 }
 
+TEST_F(PlotFilmTest, AnInterruptedFilmIsAFailureThatLeavesNothing) {
+  record("--animation turn --colliders none --rate 25 --duration 59");
+  const std::size_t files = file_count();
+  const test::Outcome outcome = test::run(
+      "vestige-plot film box.mcap & P=$!\n"
+      "until grep -qs '^SigCgt:.*[2367abef]$' /proc/$P/status || ! kill -0 $P; do sleep 0.01; done\n"
+      "kill -INT $P; wait $P",
+      folder_.path());
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_error,
+              HasSubstr("box-film.webp: stopped by Ctrl-C; nothing was written\n  start it again"));
+  EXPECT_EQ(file_count(), files);
+}
+
 TEST_F(PlotFilmTest, ADamagedTraceShowsWhatIsThereAndExitsWith3) {
   record("--animation turn --count 200 --rate 1000 --duration 1");
   const std::string whole = read_text_file(folder_ / "box.mcap");
