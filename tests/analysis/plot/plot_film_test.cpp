@@ -351,6 +351,9 @@ TEST_F(PlotFilmTest, WhatCannotBeDoneIsSaidAndNothingIsWritten) {
   EXPECT_EQ(first.exit_code, 2) << "before the trace is read";
   const test::Outcome no_trace = run("film box.gltf");
   EXPECT_EQ(no_trace.exit_code, 1);
+  const test::Outcome no_layout = run("film box.mcap --to 1 --map torso41");
+  EXPECT_EQ(no_layout.exit_code, 1);
+  EXPECT_THAT(no_layout.standard_error, HasSubstr("the layouts are: paper6, torso16, torso40, body, builtin"));
   const test::Outcome no_gl = run("film box.mcap --to 1", "__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent");
   EXPECT_EQ(no_gl.exit_code, 1);
   EXPECT_THAT(no_gl.standard_error, AllOf(HasSubstr("box-film.webp: cannot be drawn"), HasSubstr("libegl1")));
