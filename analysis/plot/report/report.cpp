@@ -66,12 +66,10 @@ struct Contacts {
 };
 
 RecordedTrace read_trace_contacts(const std::filesystem::path& file) {
+  require_there(file);
   try {
     return read_contact_recording(file.string());
   } catch (const Error& error) {
-    if (!std::filesystem::exists(file))
-      throw Error(file.string(), "is missing",
-                  "run the same 'vestige batch' (or 'batch merge') again: it writes the file");
     throw Error("contacts", error.fault(), kFileRemedy);
   }
 }
@@ -109,6 +107,7 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
 
 Avatar read_batch_avatar(const std::filesystem::path& folder, const ReportData& data) {
   const std::string file = (folder / "avatar.glb").string();
+  require_there(file);
   const std::vector<std::byte> glb = read_file(file);  // a torn one is told before it is parsed
   require_judged(file, sha256_hex(glb), data.avatar_sha256);
   Avatar avatar = parse_avatar_glb(glb, file);
@@ -119,6 +118,7 @@ Avatar read_batch_avatar(const std::filesystem::path& folder, const ReportData& 
 ActuatorMap read_batch_map(const std::filesystem::path& folder, const ReportData& data, const std::string& map,
                            const Avatar& avatar) {
   const std::string file = (folder / "maps" / (map + ".png")).string();
+  require_there(file);
   const ActuatorMapFiles files = read_actuator_map_files(file);
   const auto judged = data.map_sha256.find(map);
   if (judged != data.map_sha256.end())

@@ -309,6 +309,22 @@ TEST_F(ReportTest, RefusesAnAvatarMapOrMotorsOtherThanTheJudged) {
   EXPECT_EQ(report().exit_code, 0);
 }
 
+TEST_F(ReportTest, SaysWhatWritesAMissingFileAgain) {
+  test::write_text(folder_ / "batch/ranking.json", ranking_.dump());
+  test::write_text(folder_ / "batch/run.json", run_.dump());
+  for (const std::string name : {"avatar.glb", "maps/box.png", "contacts/two.csv", "run.json"}) {
+    std::filesystem::rename(folder_ / "batch" / name, folder_ / "aside");
+    const test::Outcome outcome = run("report batch");
+    EXPECT_EQ(outcome.exit_code, 1) << name;
+    const char* how = name == "run.json" ? " with --force: it writes the file" : ": it writes the file";
+    EXPECT_THAT(
+        outcome.standard_error,
+        HasSubstr("batch/" + name + ": is missing\n  run the same 'vestige batch' (or 'batch merge') again" + how));
+    std::filesystem::rename(folder_ / "aside", folder_ / "batch" / name);
+  }
+  expect_nothing_written();
+}
+
 TEST_F(ReportTest, NamesWhatIsWrongWithAFolderAndWritesNothing) {
   EXPECT_THAT(run("report nowhere").standard_error, AllOf(HasSubstr("nowhere"), HasSubstr("vestige batch")));
   EXPECT_THAT(run("report batch").standard_error, AllOf(HasSubstr("ranking.json"), HasSubstr("run 'vestige batch")));
