@@ -33,7 +33,9 @@ TEST_F(BatchCommandLine, ShardsMergeIntoTheBytesOfAWholeBatch) {
   expect_failure("vestige batch merge part1 part2 part3 -o part2", 2, {"part2"});
   ASSERT_EQ(run("vestige batch --maps builtin --traces a.mcap b.mcap --laws binary --shard 2/2 -o other").exit_code, 0);
   expect_failure("vestige batch merge part1 other part3 -o m", 1, {"other", "laws", "traces"}, "m");
-  expect_failure("vestige batch merge part1 nowhere -o m", 1, {"nowhere", "no batch"}, "m");
+  expect_failure("vestige batch merge part1 nowhere -o m", 1, {"nowhere: there is no such folder"}, "m");
+  expect_failure("vestige batch merge part1 a.mcap -o m", 1, {"a.mcap: is not a folder"}, "m");
+  expect_failure("vestige batch merge part1 part1/items -o m", 1, {"part1/items: contains no batch"}, "m");
   ASSERT_EQ(run("cp -r part2 changed && sed -i 's/\"frames\": 100/\"frames\": 101/' changed/items/b.json").exit_code,
             0);
   expect_failure("vestige batch merge part1 part2 part3 changed -o m", 1, {"b.json", "differs"}, "m");
