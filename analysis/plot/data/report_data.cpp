@@ -194,6 +194,7 @@ void read_law_options(const JsonField& options, ReportData& data) {
   for (const LawParameter& known : law_parameters())
     if (options.has(known.field))
       data.law_options.*known.option = options.at(known.field).within(kLeast, kMost) / known.per_unit;
+  if (options.has("detector")) data.detector = options.at("detector").text();
   data.approximate = options.has("approximate");
   for (const Method method : {Method::kStatic, Method::kCarried, Method::kCcd})
     if (options.has("method") && options.at("method").text() == vestige::name_of(method)) data.method = method;

@@ -105,6 +105,7 @@ struct ReportData {
   std::vector<std::string> laws;                                 ///< in the order of the batch
   LawOptions law_options;                                        ///< options of all laws
   Method method = Method::kStatic;                               ///< by which contacts were found
+  std::string detector;                                          ///< by which contacts were found; empty: unknown
   bool approximate = false;                                      ///< by a detector that simplifies the skin
   std::string actuator;                                          ///< file of the motors; empty: ideal motors
   std::string actuator_sha256;                                   ///< of actuator.json; empty: unknown

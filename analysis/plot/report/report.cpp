@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "analysis/base/growing_folder.hpp"
@@ -206,6 +207,7 @@ class Report {
     const std::string html = report_html(page);
     folder_->commit([](const std::filesystem::path&) { return false; });
     remove_other_views(page.maps, maps);
+    remove_figures(std::span(maps).subspan(pictured), data.laws);
     OutputFile file(page_file, options_.overwrite);
     file.write(html);
     file.commit();
@@ -238,14 +240,13 @@ class Report {
 
   /// Draws the page on which a map is watched, if there is a trace for it.
   MapView watch(const ReportData& data, const Candidate& candidate) {
+    if (data.approximate)
+      return {"", "", std::nullopt, {}, "the batch's detector puts simpler shapes in place of the skin"};
     TellingTrace telling = telling_trace(batch_, data, candidate);
     MapView view = {"", "", telling.value, std::move(telling.not_there)};
     if (telling.trace == nullptr) return view;
     view.trace = telling.trace->name;
-    if (data.approximate)
-      view.problem = "the batch's detector puts simpler shapes in place of the skin";
-    else
-      draw_view(data, candidate, telling, view);
+    draw_view(data, candidate, telling, view);
     return view;
   }
 
@@ -283,6 +284,18 @@ class Report {
     }
     std::error_code ignored;
     for (const std::filesystem::path& other : others) std::filesystem::remove(other, ignored);
+  }
+
+  /// Removes the figures that an earlier report drew of these maps.
+  void remove_figures(std::span<const std::string> maps, const std::vector<std::string>& laws) const {
+    std::vector<std::string> kinds = {"regions", "contacts", "not-felt", "errors"};
+    kinds.reserve(kinds.size() + laws.size());
+    for (const std::string& law : laws) kinds.push_back("timeline-" + law);
+    std::error_code ignored;
+    for (const std::string& map : maps)
+      for (const std::string& kind : kinds)
+        for (const char* extension : {"svg", "png"})
+          std::filesystem::remove(options_.output / "figures" / fmt::format("{}-{}.{}", map, kind, extension), ignored);
   }
 
   MapSection section(const ReportData& data, const std::string& name, const Avatar& avatar, const Contacts& contacts,
