@@ -53,4 +53,9 @@ class Progress {
 void catch_interrupts();
 bool interrupted();
 
+/// The cause of an error about an output that an interrupt kept from being written.
+inline constexpr std::string_view kStopped = "stopped by Ctrl-C; nothing was written";
+/// The remedy for it.
+inline constexpr std::string_view kStartAgain = "start it again";
+
 }  // namespace vestige::cli

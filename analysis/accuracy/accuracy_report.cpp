@@ -216,6 +216,12 @@ std::string per_100_text(const EventScore& score) {
   return fmt::format("{:.1f} ({:.1f} to {:.1f})", 100 * rate.value, 100 * rate.interval.low, 100 * rate.interval.high);
 }
 
+/// "boxes, static (approx.)"
+std::string title_of(const AccuracyContestant& contestant) {
+  return fmt::format("{}, {}{}", contestant.detector, name_of(contestant.method),
+                     contestant.instance->is_approximate() ? " (approx.)" : "");
+}
+
 /// What the events of spheres do not say: a touch may be found and still have holes.
 std::string touch_table(const AccuracyScene& scene, const std::vector<AccuracyContestant>& contestants) {
   constexpr const char* kLine = "{:<26} {:>6} {:>14} {:>13} {:>8} {:>15} {:>13}\n";
@@ -225,10 +231,9 @@ std::string touch_table(const AccuracyScene& scene, const std::vector<AccuracyCo
   for (std::size_t i = 0; i < contestants.size(); ++i)
     for (const AccuracyPoint& point : scene.points)
       if (point.contestant == i)
-        fmt::format_to(std::back_inserter(table), kLine,
-                       fmt::format("{}, {}", contestants[i].detector, name_of(contestants[i].method)), point.rate_hz,
-                       point.touches->within, point.touches->within - point.touches->reported,
-                       point.touches->wrong_actuator, point.touches->outside, point.touches->false_frames);
+        fmt::format_to(std::back_inserter(table), kLine, title_of(contestants[i]), point.rate_hz, point.touches->within,
+                       point.touches->within - point.touches->reported, point.touches->wrong_actuator,
+                       point.touches->outside, point.touches->false_frames);
   return table;
 }
 
@@ -252,11 +257,9 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
                                : fmt::format("{:.2f}/{:.2f}", quantile_ms(seconds, 0.5), quantile_ms(seconds, 0.99));
       };
       const EventCounts& all = point.score.all;
-      fmt::format_to(std::back_inserter(table), kLine,
-                     fmt::format("{}, {}{}", contestants[i].detector, name_of(contestants[i].method),
-                                 contestants[i].instance->is_approximate() ? " (approx.)" : ""),
-                     point.rate_hz, all.true_events(), all.missed, all.false_events, all.wrong_actuator,
-                     per_100_text(point.score), per_100_text(point.tolerated), pair_ms(point.score.impact_error_s),
+      fmt::format_to(std::back_inserter(table), kLine, title_of(contestants[i]), point.rate_hz, all.true_events(),
+                     all.missed, all.false_events, all.wrong_actuator, per_100_text(point.score),
+                     per_100_text(point.tolerated), pair_ms(point.score.impact_error_s),
                      pair_ms(point.score.onset_error_s),
                      fmt::format("{}{:.3g}", is_on_front(point) ? "* " : "", load_ms(point)));
     }

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/base/results_folder.hpp"
 #include "analysis/batch/batch_plan.hpp"
 #include "traces/base/system_error.hpp"
 #include "traces/files/input_file.hpp"
@@ -84,6 +85,12 @@ bool has_results_of(const nlohmann::ordered_json& finished, const nlohmann::orde
   }
 }
 
+/// Returns `folder`. Throws `Error` before anything is written there if another verb's results would be lost.
+std::filesystem::path without_other_results(std::filesystem::path folder) {
+  refuse_other_results(folder, "batch");
+  return folder;
+}
+
 }  // namespace
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
@@ -113,7 +120,7 @@ FolderLock::~FolderLock() {
 
 BatchFolder::BatchFolder(std::filesystem::path folder, const nlohmann::ordered_json& batch, const Shard& shard,
                          OtherBatch other)
-    : folder_(std::move(folder)), lock_(folder_) {
+    : folder_(without_other_results(std::move(folder))), lock_(folder_) {
   refuse_others(batch, shard, other);
   const auto run = folder_ / "run.json";
   if (std::filesystem::exists(run))

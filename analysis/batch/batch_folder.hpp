@@ -41,7 +41,8 @@ class FolderLock {
 class BatchFolder {
  public:
   /// Locks the folder. Removes files that a killed run of this batch left half-written. `batch` is `to_json(plan)`.
-  /// Throws `Error` if the folder holds another batch, or files without a batch, and `other` is kRefuse.
+  /// Throws `Error` if the folder holds another batch, or files without a batch, and `other` is kRefuse; also if it
+  /// holds results of another verb.
   BatchFolder(std::filesystem::path folder, const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other);
 
   std::string item(const std::string& name) const { return file("items", name, ".json"); }

@@ -32,6 +32,8 @@ struct ShardFolder {
 ShardFolder read_shard(const std::string& folder) {
   ShardFolder shard = {folder, {}, {}};
   const std::string path = shard.path("run.json");
+  if (!std::filesystem::is_directory(folder))
+    throw Error(folder, std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder", kRemedy);
   if (!std::filesystem::exists(path)) throw Error(folder, "contains no batch (no run.json)", kRemedy);
   shard.run = read_json_object(path, kRemedy);
   try {

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <system_error>
 
 #include "analysis/mapping/map_maker.hpp"
 #include "traces/base/error.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 
@@ -85,6 +88,14 @@ const Layout& find_layout(std::string_view name) {
   if (found == kLayouts.end())
     throw Error(name, "there is no such layout", fmt::format("there are: {}", fmt::join(layout_names(), ", ")));
   return *found;
+}
+
+/// Returns whether `map`, which is not a layout, looks like the name of one: it is no path, no file, and not what
+/// `read_actuator_map_files` knows by name.
+bool is_unknown_name(const std::string& map) {
+  if (map == kBuiltin || map == "none" || map == "-" || map.find_first_of("./") != std::string::npos) return false;
+  std::error_code ignored;
+  return !std::filesystem::exists(map, ignored);
 }
 
 }  // namespace
@@ -167,7 +178,11 @@ ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout) {
 }
 
 ActuatorMapFiles read_map_files(const Avatar& avatar, const std::string& map) {
-  return is_layout(map) ? make_layout(avatar, map) : read_actuator_map_files(map);
+  if (is_layout(map)) return make_layout(avatar, map);
+  if (is_unknown_name(map))
+    throw Error(map, "there is no such file",
+                fmt::format("the layouts are: {}, {}", fmt::join(layout_names(), ", "), kBuiltin));
+  return read_actuator_map_files(map);
 }
 
 }  // namespace vestige

@@ -46,7 +46,8 @@ EmptyRegions layout_empty_regions(std::string_view layout);
 /// with it.
 std::string layout_regions_json(std::string_view layout);
 
-/// Reads a map. `map` is a layout's name, or what `read_actuator_map_files` takes. Throws `Error`.
+/// Reads a map. `map` is a layout's name, or what `read_actuator_map_files` takes. Throws `Error`, which lists the
+/// layouts if `map` may be one of them, misspelt.
 ActuatorMapFiles read_map_files(const Avatar& avatar, const std::string& map);
 
 }  // namespace vestige

@@ -6,11 +6,25 @@
 #include <charconv>
 #include <limits>
 #include <set>
+#include <system_error>
 
 #include "traces/base/error.hpp"
 #include "traces/scene/people.hpp"
 
 namespace vestige::cli {
+
+namespace {
+
+/// Returns whether a value names no person where it looks as if it did: "1.5=FILE", or "K=FILE" as help has it.
+bool misnames_person(const std::string& text) {
+  const std::string before = text.substr(0, text.find('='));
+  std::error_code ignored;
+  return before.size() < text.size() && !before.empty() &&
+         (before == "K" || before.find_first_not_of("0123456789.") == std::string::npos) &&
+         !std::filesystem::exists(text, ignored);
+}
+
+}  // namespace
 
 PersonValue parse_person_value(const std::string& text) {
   const std::size_t sign = std::min(text.find('='), text.size());
@@ -29,6 +43,9 @@ std::vector<PersonValue> parse_person_values(const PersonFlag& flag, const std::
     const PersonValue& value = values.emplace_back(parse_person_value(text));
     if (value.person && value.number.find_first_not_of('0') == std::string::npos)
       throw UsageError(flag.name, fmt::format("'{}': people count from 1", text),
+                       fmt::format("write for example {} 2={}", flag.name, flag.example));
+    if (!value.person && misnames_person(text))
+      throw UsageError(flag.name, fmt::format("'{}': a person's number is expected before '='", text),
                        fmt::format("write for example {} 2={}", flag.name, flag.example));
     if (value.value.empty())
       throw UsageError(flag.name, fmt::format("'{}' names no {}", text, flag.noun),

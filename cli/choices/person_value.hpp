@@ -25,7 +25,8 @@ struct PersonFlag {
 /// Splits one value.
 PersonValue parse_person_value(const std::string& text);
 
-/// Reads all values of a flag. Throws `UsageError` for person 0, for an empty value, and if a person gets two.
+/// Reads all values of a flag. Throws `UsageError` for person 0, for what is no number where one is expected, for an
+/// empty value, and if a person gets two.
 std::vector<PersonValue> parse_person_values(const PersonFlag& flag, const std::vector<std::string>& texts);
 
 /// Returns the person, counted from 0, of a scene with so many `people`, whose value this is. Throws `UsageError` for a

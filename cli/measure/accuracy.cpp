@@ -18,6 +18,7 @@
 #include "analysis/accuracy/inside_time.hpp"
 #include "analysis/accuracy/missed_page.hpp"
 #include "analysis/base/provenance.hpp"
+#include "analysis/base/results_folder.hpp"
 #include "analysis/view/page.hpp"
 #include "analysis/view/trace_page.hpp"
 #include "cli/choices/detectors.hpp"
@@ -365,6 +366,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   const std::string errors_path = options.output + "/accuracy.json";
   const std::string run_path = options.output + "/run.json";
   make_output_folder(options.output);
+  refuse_other_results(options.output, "accuracy");
   const std::string page_path = options.output + "/missed.html";
   const std::vector<std::string> outputs = {errors_path, run_path, page_path, options.common.json};
   check_outputs(outputs, {options.scene.avatar, options.scene.map}, options.common);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "analysis/base/provenance.hpp"
+#include "analysis/base/results_folder.hpp"
 #include "analysis/stress/stress_report.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/help/validators.hpp"
@@ -90,6 +91,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   const std::string json_path = options.output + "/stress.json";
   const std::string run_path = options.output + "/run.json";
   make_output_folder(options.output);
+  refuse_other_results(options.output, "stress");
   check_outputs({json_path, run_path, options.common.json}, {}, options.common);
   catch_interrupts();
   const Contestants contestants = make_contestants(options, verbosity);

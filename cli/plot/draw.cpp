@@ -37,8 +37,11 @@ int draw_results(const Options& options, const char* name,
                  std::unique_ptr<Figure> (*figure_of)(const std::filesystem::path& folder)) {
   const std::filesystem::path& folder = options.inputs.front();
   const std::filesystem::path results = folder / fmt::format("{}.json", name);
-  if (!std::filesystem::exists(results))
-    throw Error(results.string(), "no such file", fmt::format("name a folder that 'vestige {} -o' wrote", name));
+  const std::string remedy = fmt::format("name a folder that 'vestige {} -o' wrote", name);
+  if (!std::filesystem::is_directory(folder))
+    throw Error(folder.string(), std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder",
+                remedy);
+  if (!std::filesystem::exists(results)) throw Error(results.string(), "there is no such file", remedy);
   return write_figure(options, (options.output.empty() ? folder : options.output) / name,
                       [&] { return figure_of(folder); });
 }
@@ -275,10 +278,7 @@ int draw_report(const Options& options) {
     cli::Progress progress("report", options.quiet ? cli::Verbosity::kQuiet : cli::Verbosity::kNormal);
     outcome = write_report(batch, settings, [&](double share) { return progress.update(share); });
   }
-  if (outcome.interrupted) {
-    warn(options, "stopped; nothing was written");
-    return cli::kDataLost;
-  }
+  if (outcome.interrupted) throw Error((settings.output / "report.html").string(), cli::kStopped, cli::kStartAgain);
   warn(options, outcome.warnings);
   if (!options.quiet)
     print_message(fmt::format("wrote {}, and {} figures in {}\n", outcome.page.string(), outcome.figures,

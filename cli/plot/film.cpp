@@ -107,10 +107,7 @@ int draw_film(const Options& options) {
   require_frames(trace, input);
   cli::catch_interrupts();
   const std::optional<Film> film = film_of(options, trace, people, output);
-  if (!film) {
-    warn(options, "stopped; nothing was written");
-    return cli::kDataLost;
-  }
+  if (!film) throw Error(output.string(), cli::kStopped, cli::kStartAgain);
   const int damage = report_damage(options, trace);
   for (const std::string& note : film->notes) warn(options, fmt::format("{}: {}", input, note));
   OutputFile file(output, overwrite_of(options));

@@ -94,7 +94,7 @@ std::vector<std::uint64_t> pack_frames(OpenTrace& trace, const std::vector<ViewS
   for (const ViewSide& side : sides) runs.push_back(side.run.get());
   Progress progress("Looking for contacts", options.common.verbosity());
   auto contacts = pack_trace(trace.reader, runs, packer, [&](double share) { return progress.update(share); });
-  if (!contacts) throw Error(options.trace, "writing the page was stopped", "");
+  if (!contacts) throw Error(options.trace, kStopped, kStartAgain);
   return std::move(*contacts);
 }
 

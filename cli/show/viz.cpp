@@ -10,6 +10,7 @@
 #include "analysis/viz/viz_trace.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/law_choice.hpp"
+#include "cli/choices/person_value.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/files/export_formats.hpp"
 #include "cli/files/rewriting.hpp"
@@ -45,7 +46,8 @@ void add_all(OpenTrace& trace, SeenRun& run, VizTrace& copy, const VizOptions& o
   while (trace.reader.next(frame)) {
     run.step(frame);
     copy.write(frame, run.seen());
-    if (!progress.update(++done / total)) throw Error(options.output, "adding was stopped", "");
+    if (!progress.update(++done / total))
+      throw Error(options.output, is_pipe(options.output) ? "stopped by Ctrl-C" : kStopped, kStartAgain);
   }
   copy.finish();
 }

@@ -333,6 +333,9 @@ TEST_F(CommandLine, NamesWhatIsWrongWithForeignFiles) {
   expect_failure("vestige record --avatar . -o x.mcap", 1, {"folder"}, "x.mcap");
   expect_failure("vestige record --map nowhere.png -o x.mcap", 1, {"nowhere.png"}, "x.mcap");
   expect_failure("vestige record --map text.txt -o x.mcap", 1, {"text.txt", "PNG"}, "x.mcap");
+  for (const char* command : {"record -o x.mcap", "replay small.mcap", "view small.mcap -o x.mcap"})
+    expect_failure(std::string("vestige ") + command + " --map torso41", 1,
+                   {"torso41: there is no such file", "the layouts are: paper6, torso16, torso40, body"}, "x.mcap");
   expect_failure("vestige record --colliders nowhere.csv -o x.mcap", 1, {"nowhere.csv"}, "x.mcap");
   expect_failure("vestige record -o nowhere/x.mcap", 1, {"nowhere"});
   for (const char* file : {"text.txt", "empty", "nowhere", "."}) {

@@ -22,6 +22,12 @@ class PipesAndInterrupts : public test::CommandLineTest {
     return "until [ -n \"$(find . -name '*" + name + "*' -size +" + std::to_string(bytes - 1) +
            "c)\" ] || ! kill -0 $P; do sleep 0.01; done; ";
   }
+
+  /// Waits until the process catches SIGINT, whose bit is the second of the mask, and sends it.
+  static std::string interrupt() {
+    return "until grep -qs '^SigCgt:.*[2367abef]$' /proc/$P/status || ! kill -0 $P; do sleep 0.01; done; kill -INT $P; "
+           "wait $P";
+  }
 };
 
 TEST_F(PipesAndInterrupts, PipesATraceFromOneVerbToTheNext) {
@@ -38,6 +44,13 @@ TEST_F(PipesAndInterrupts, InterruptedRecordingLeavesAValidTrace) {
   const auto inspect = json_of("vestige inspect long.mcap --json -");
   EXPECT_EQ(inspect["complete"], true);
   EXPECT_GT(inspect["messages"], 100);
+}
+
+TEST_F(PipesAndInterrupts, AnInterruptedPageOrCopyIsAFailureThatLeavesNothing) {
+  ASSERT_EQ(run("vestige record -q --count 3 --rate 100 --duration 10 -o long.mcap").exit_code, 0);
+  for (const std::string verb : {"view", "viz"})
+    expect_failure("vestige " + verb + " long.mcap --detector exact -o out & P=$!; " + interrupt(), 1,
+                   {": stopped by Ctrl-C; nothing was written\n  start it again"}, "out");
 }
 
 TEST_F(PipesAndInterrupts, AClosedPipeEndsItWithoutACrash) {

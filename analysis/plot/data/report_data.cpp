@@ -194,6 +194,7 @@ void read_law_options(const JsonField& options, ReportData& data) {
   for (const LawParameter& known : law_parameters())
     if (options.has(known.field))
       data.law_options.*known.option = options.at(known.field).within(kLeast, kMost) / known.per_unit;
+  if (options.has("detector")) data.detector = options.at("detector").text();
   data.approximate = options.has("approximate");
   for (const Method method : {Method::kStatic, Method::kCarried, Method::kCcd})
     if (options.has("method") && options.at("method").text() == vestige::name_of(method)) data.method = method;
@@ -204,6 +205,7 @@ void read_law_options(const JsonField& options, ReportData& data) {
 }
 
 std::shared_ptr<const ActuatorModel> read_actuators(const std::string& file, const ReportData& data) {
+  require_there(file);
   const std::string text = read_text_file(file);
   require_judged(file, sha256_hex(std::as_bytes(std::span(text))), data.actuator_sha256);
   return std::make_shared<const ActuatorModel>(parse_actuator_model(text, file));
@@ -299,6 +301,15 @@ void require_judged(const std::string& file, const std::string& sha256, const st
   throw Error(file, "was changed after the batch scored it: the SHA-256 in run.json differs", kFileRemedy);
 }
 
+void require_there(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) return;
+  // A folder without run.json is not known as a batch's.
+  throw Error(file.string(), "is missing",
+              fmt::format("run the same 'vestige batch' (or 'batch merge') again{}: it writes the file",
+                          file.filename() == "run.json" ? " with --force" : ""));
+}
+
 ReportData read_report(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder))
     throw Error(folder.string(), std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder",
@@ -312,6 +323,7 @@ ReportData read_report(const std::filesystem::path& folder) {
                                                              : "run 'vestige batch -o' first, and name its folder");
   ReportData data;
   read_ranking(folder / "ranking.json", data);
+  require_there(folder / "run.json");
   read_run(folder / "run.json", data);
   read_scores(folder / "scores.json", data);
   if (!data.actuator.empty()) data.actuators = read_actuators((folder / "actuator.json").string(), data);

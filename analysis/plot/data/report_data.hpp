@@ -105,6 +105,7 @@ struct ReportData {
   std::vector<std::string> laws;                                 ///< in the order of the batch
   LawOptions law_options;                                        ///< options of all laws
   Method method = Method::kStatic;                               ///< by which contacts were found
+  std::string detector;                                          ///< by which contacts were found; empty: unknown
   bool approximate = false;                                      ///< by a detector that simplifies the skin
   std::string actuator;                                          ///< file of the motors; empty: ideal motors
   std::string actuator_sha256;                                   ///< of actuator.json; empty: unknown
@@ -125,6 +126,9 @@ struct ReportData {
 
 /// Throws `Error` if `file` is not what was judged. `judged` is the SHA-256 in run.json, or empty if unknown.
 void require_judged(const std::string& file, const std::string& sha256, const std::string& judged);
+
+/// Throws `Error` if a file of the folder, which the batch wrote, is missing.
+void require_there(const std::filesystem::path& file);
 
 /// Reads ranking.json, run.json and actuator.json. Throws `Error` with file and field. For a folder without a ranking,
 /// the error says which command to run.

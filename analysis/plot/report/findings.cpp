@@ -92,6 +92,13 @@ TraceWords traces_in_words(const ReportData& data) {
   return {fmt::format("{} and {}", made, recorded), "these scenarios and files"};
 }
 
+/// "with the approximate detector boxes, "; nothing if contacts are exact.
+std::string approximately(const ReportData& data) {
+  if (!data.approximate) return "";
+  if (data.detector.empty()) return "with an approximate detector, ";
+  return fmt::format("with the approximate detector {}, ", html_text(data.detector));
+}
+
 /// "; on average it let 54.2 % of a trace's contacts be felt"
 std::string felt_in_words(const ReportData& data, const Candidate& candidate) {
   const auto felt = data.felt_share(candidate);
@@ -235,12 +242,14 @@ std::string quotable_sentence(const ReportData& data) {
   const Candidate& first = data.ranking.front();
   const std::string words = html_text(words_of_name(metric.name));
   if (!first.headline.mean)
-    return fmt::format("No combination of map and law has a value of {} on any trace, so nothing is ranked.", words);
+    return sentence_case(
+        fmt::format("{}no combination of map and law has a value of {} on any trace, so nothing is ranked.",
+                    approximately(data), words));
   const TraceWords traces = traces_in_words(data);
   const std::vector<std::string> best = firsts(data.ranking);
   const std::vector<std::string> maps = data.maps();
   std::string text =
-      fmt::format("Over {}, <strong>{}</strong> had the {} {}{}", traces.all,
+      fmt::format("Over {}, {}<strong>{}</strong> had the {} {}{}", traces.all, approximately(data),
                   best.empty() ? html_text(name_of(first)) : listed_html(best),
                   metric.better == "higher" ? "highest" : "lowest", metric.model_based ? "modelled " : "", words);
   if (data.ranking.size() > 1)

@@ -10,7 +10,8 @@ namespace vestige::plot {
 // What the report says in words. All functions return HTML.
 
 /// Returns one sentence that a paper can quote: which map and law came first, of which, by what, over which traces,
-/// with what interval, and what share of the contacts was felt. It says only what the batch's folder holds.
+/// with what interval, and what share of the contacts was felt. It names a detector that is approximate. It says only
+/// what the batch's folder holds.
 std::string quotable_sentence(const ReportData& data);
 
 /// Returns how the others compare with the first: which have its value, which are worse, which have none.

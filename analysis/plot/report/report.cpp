@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "analysis/base/growing_folder.hpp"
@@ -66,12 +67,10 @@ struct Contacts {
 };
 
 RecordedTrace read_trace_contacts(const std::filesystem::path& file) {
+  require_there(file);
   try {
     return read_contact_recording(file.string());
   } catch (const Error& error) {
-    if (!std::filesystem::exists(file))
-      throw Error(file.string(), "is missing",
-                  "run the same 'vestige batch' (or 'batch merge') again: it writes the file");
     throw Error("contacts", error.fault(), kFileRemedy);
   }
 }
@@ -109,6 +108,7 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
 
 Avatar read_batch_avatar(const std::filesystem::path& folder, const ReportData& data) {
   const std::string file = (folder / "avatar.glb").string();
+  require_there(file);
   const std::vector<std::byte> glb = read_file(file);  // a torn one is told before it is parsed
   require_judged(file, sha256_hex(glb), data.avatar_sha256);
   Avatar avatar = parse_avatar_glb(glb, file);
@@ -119,6 +119,7 @@ Avatar read_batch_avatar(const std::filesystem::path& folder, const ReportData& 
 ActuatorMap read_batch_map(const std::filesystem::path& folder, const ReportData& data, const std::string& map,
                            const Avatar& avatar) {
   const std::string file = (folder / "maps" / (map + ".png")).string();
+  require_there(file);
   const ActuatorMapFiles files = read_actuator_map_files(file);
   const auto judged = data.map_sha256.find(map);
   if (judged != data.map_sha256.end())
@@ -206,6 +207,7 @@ class Report {
     const std::string html = report_html(page);
     folder_->commit([](const std::filesystem::path&) { return false; });
     remove_other_views(page.maps, maps);
+    remove_figures(std::span(maps).subspan(pictured), data.laws);
     OutputFile file(page_file, options_.overwrite);
     file.write(html);
     file.commit();
@@ -238,14 +240,13 @@ class Report {
 
   /// Draws the page on which a map is watched, if there is a trace for it.
   MapView watch(const ReportData& data, const Candidate& candidate) {
+    if (data.approximate)
+      return {"", "", std::nullopt, {}, "the batch's detector puts simpler shapes in place of the skin"};
     TellingTrace telling = telling_trace(batch_, data, candidate);
     MapView view = {"", "", telling.value, std::move(telling.not_there)};
     if (telling.trace == nullptr) return view;
     view.trace = telling.trace->name;
-    if (data.approximate)
-      view.problem = "the batch's detector puts simpler shapes in place of the skin";
-    else
-      draw_view(data, candidate, telling, view);
+    draw_view(data, candidate, telling, view);
     return view;
   }
 
@@ -283,6 +284,18 @@ class Report {
     }
     std::error_code ignored;
     for (const std::filesystem::path& other : others) std::filesystem::remove(other, ignored);
+  }
+
+  /// Removes the figures that an earlier report drew of these maps.
+  void remove_figures(std::span<const std::string> maps, const std::vector<std::string>& laws) const {
+    std::vector<std::string> kinds = {"regions", "contacts", "not-felt", "errors"};
+    kinds.reserve(kinds.size() + laws.size());
+    for (const std::string& law : laws) kinds.push_back("timeline-" + law);
+    std::error_code ignored;
+    for (const std::string& map : maps)
+      for (const std::string& kind : kinds)
+        for (const char* extension : {"svg", "png"})
+          std::filesystem::remove(options_.output / "figures" / fmt::format("{}-{}.{}", map, kind, extension), ignored);
   }
 
   MapSection section(const ReportData& data, const std::string& name, const Avatar& avatar, const Contacts& contacts,

@@ -273,6 +273,16 @@ Avatar skeleton_of(const std::vector<std::pair<const char*, int>>& joints) {
   return avatar;
 }
 
+TEST(Layouts, AreListedWhereANameIsNeitherALayoutNorAFile) {
+  const auto read_named = [](const char* map) {
+    return message_of([&] { static_cast<void>(read_map_files(test::builtin_avatar(), map)); });
+  };
+  EXPECT_EQ(read_named("torso41"),
+            "torso41: there is no such file\n  the layouts are: paper6, torso16, torso40, body, builtin");
+  EXPECT_EQ(read_named("torso41.png"), "torso41.png: there is no such file\n  check the name");
+  for (const char* known : {"none", "builtin", "paper6"}) EXPECT_EQ(read_named(known), "no error");
+}
+
 TEST(JointNames, OfCommonRigsSayWhichPartTheyAre) {
   using enum SkinPart;
   const auto parts = [](const std::vector<std::pair<const char*, int>>& joints) {

@@ -351,6 +351,9 @@ TEST_F(PlotFilmTest, WhatCannotBeDoneIsSaidAndNothingIsWritten) {
   EXPECT_EQ(first.exit_code, 2) << "before the trace is read";
   const test::Outcome no_trace = run("film box.gltf");
   EXPECT_EQ(no_trace.exit_code, 1);
+  const test::Outcome no_layout = run("film box.mcap --to 1 --map torso41");
+  EXPECT_EQ(no_layout.exit_code, 1);
+  EXPECT_THAT(no_layout.standard_error, HasSubstr("the layouts are: paper6, torso16, torso40, body, builtin"));
   const test::Outcome no_gl = run("film box.mcap --to 1", "__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent");
   EXPECT_EQ(no_gl.exit_code, 1);
   EXPECT_THAT(no_gl.standard_error, AllOf(HasSubstr("box-film.webp: cannot be drawn"), HasSubstr("libegl1")));
@@ -359,6 +362,20 @@ TEST_F(PlotFilmTest, WhatCannotBeDoneIsSaidAndNothingIsWritten) {
   write_text(folder_ / "box-film.webp", "mine");
   EXPECT_EQ(run("film box.mcap --to 1").exit_code, 1);
   EXPECT_EQ(read_text_file(folder_ / "box-film.webp"), "mine");
+}
+
+TEST_F(PlotFilmTest, AnInterruptedFilmIsAFailureThatLeavesNothing) {
+  record("--animation turn --colliders none --rate 25 --duration 59");
+  const std::size_t files = file_count();
+  const test::Outcome outcome = test::run(
+      "vestige-plot film box.mcap & P=$!\n"
+      "until grep -qs '^SigCgt:.*[2367abef]$' /proc/$P/status || ! kill -0 $P; do sleep 0.01; done\n"
+      "kill -INT $P; wait $P",
+      folder_.path());
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_error,
+              HasSubstr("box-film.webp: stopped by Ctrl-C; nothing was written\n  start it again"));
+  EXPECT_EQ(file_count(), files);
 }
 
 TEST_F(PlotFilmTest, ADamagedTraceShowsWhatIsThereAndExitsWith3) {

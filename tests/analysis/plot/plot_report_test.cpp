@@ -280,6 +280,40 @@ TEST_F(ReportTest, WhatIsThereStaysUnlessForced) {
   EXPECT_THAT(page(), HasSubstr("fedcba9876"));
 }
 
+TEST_F(ReportTest, FiguresOfMapsThatItNoLongerDrawsAreGone) {
+  add_map("other");
+  ranking_["ranking"] = {candidate(1, "box", "phantom", 12.5, false, 2), candidate(2, "other", "binary", 20, true, 2)};
+  ASSERT_EQ(report().exit_code, 0);
+  const std::filesystem::path figures = folder_ / "batch/figures";
+  for (const char* mine : {"other-notes.svg", "third-regions.svg"}) test::write_text(figures / mine, "mine");
+  const std::vector<std::string> kinds = {"regions", "contacts", "not-felt", "errors", "timeline-binary"};
+  for (const std::string& kind : kinds) ASSERT_TRUE(std::filesystem::exists(figures / ("other-" + kind + ".png")));
+  ASSERT_EQ(report("--top 1 --force").exit_code, 0);
+  for (const std::string& kind : kinds)
+    for (const char* extension : {".svg", ".png"}) {
+      EXPECT_FALSE(std::filesystem::exists(figures / ("other-" + kind + extension))) << kind << extension;
+      EXPECT_TRUE(std::filesystem::exists(figures / ("box-" + kind + extension))) << kind << extension;
+    }
+  for (const char* mine : {"other-notes.svg", "third-regions.svg", "ranking.svg"})
+    EXPECT_TRUE(std::filesystem::exists(figures / mine)) << mine;
+}
+
+TEST_F(ReportTest, SaysThatContactsAreApproximate) {
+  run_["batch"]["options"]["detector"] = "boxes";
+  run_["batch"]["options"]["approximate"] = true;
+  ASSERT_EQ(report().exit_code, 0);
+  EXPECT_THAT(page(), AllOf(HasSubstr("with the approximate detector boxes, <strong>box with phantom</strong> had the"),
+                            HasSubstr("There is no page on which it moves: the batch&#39;s detector puts simpler")));
+  for (nlohmann::json& trace : run_["traces"]) trace["contacts"] = 0;
+  for (nlohmann::json& one : ranking_["ranking"]) {
+    one["rank"] = nullptr;
+    for (const char* value : {"mean", "low", "high"}) one["headline"][value] = nullptr;
+  }
+  ASSERT_EQ(report("--force").exit_code, 0);
+  EXPECT_THAT(page(), AllOf(HasSubstr("With the approximate detector boxes, no combination of map and law has a value"),
+                            HasSubstr("There is no page on which it moves: the batch&#39;s detector puts simpler")));
+}
+
 TEST_F(ReportTest, RefusesAnAvatarMapOrMotorsOtherThanTheJudged) {
   const std::string sidecar = read_text_file(folder_ / "batch/maps/box.json");
   const std::string map = read_text_file(folder_ / "batch/maps/box.png") + sidecar;
@@ -307,6 +341,22 @@ TEST_F(ReportTest, RefusesAnAvatarMapOrMotorsOtherThanTheJudged) {
   test::write_text(folder_ / "batch/actuator.json", motors);
   expect_nothing_written();
   EXPECT_EQ(report().exit_code, 0);
+}
+
+TEST_F(ReportTest, SaysWhatWritesAMissingFileAgain) {
+  test::write_text(folder_ / "batch/ranking.json", ranking_.dump());
+  test::write_text(folder_ / "batch/run.json", run_.dump());
+  for (const std::string name : {"avatar.glb", "maps/box.png", "contacts/two.csv", "run.json"}) {
+    std::filesystem::rename(folder_ / "batch" / name, folder_ / "aside");
+    const test::Outcome outcome = run("report batch");
+    EXPECT_EQ(outcome.exit_code, 1) << name;
+    const char* how = name == "run.json" ? " with --force: it writes the file" : ": it writes the file";
+    EXPECT_THAT(
+        outcome.standard_error,
+        HasSubstr("batch/" + name + ": is missing\n  run the same 'vestige batch' (or 'batch merge') again" + how));
+    std::filesystem::rename(folder_ / "aside", folder_ / "batch" / name);
+  }
+  expect_nothing_written();
 }
 
 TEST_F(ReportTest, NamesWhatIsWrongWithAFolderAndWritesNothing) {

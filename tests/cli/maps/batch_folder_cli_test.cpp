@@ -33,7 +33,9 @@ TEST_F(BatchCommandLine, ShardsMergeIntoTheBytesOfAWholeBatch) {
   expect_failure("vestige batch merge part1 part2 part3 -o part2", 2, {"part2"});
   ASSERT_EQ(run("vestige batch --maps builtin --traces a.mcap b.mcap --laws binary --shard 2/2 -o other").exit_code, 0);
   expect_failure("vestige batch merge part1 other part3 -o m", 1, {"other", "laws", "traces"}, "m");
-  expect_failure("vestige batch merge part1 nowhere -o m", 1, {"nowhere", "no batch"}, "m");
+  expect_failure("vestige batch merge part1 nowhere -o m", 1, {"nowhere: there is no such folder"}, "m");
+  expect_failure("vestige batch merge part1 a.mcap -o m", 1, {"a.mcap: is not a folder"}, "m");
+  expect_failure("vestige batch merge part1 part1/items -o m", 1, {"part1/items: contains no batch"}, "m");
   ASSERT_EQ(run("cp -r part2 changed && sed -i 's/\"frames\": 100/\"frames\": 101/' changed/items/b.json").exit_code,
             0);
   expect_failure("vestige batch merge part1 part2 part3 changed -o m", 1, {"b.json", "differs"}, "m");
@@ -92,6 +94,26 @@ TEST_F(BatchCommandLine, RunsAgainWhatHasChangedAndNothingElse) {
   ASSERT_EQ(run("mkdir mine && echo precious >mine/scores.csv").exit_code, 0);
   expect_failure("vestige batch --maps builtin --traces a.mcap -o mine", 1, {"mine", "scores.csv", "--force"});
   EXPECT_EQ(read_text_file(folder_ / "mine/scores.csv"), "precious\n");
+}
+
+TEST_F(BatchCommandLine, ResultsOfAnotherVerbAreNotReplaced) {
+  record({"a.mcap"});
+  const std::string batch = "vestige batch --maps builtin --traces a.mcap --laws binary -o ";
+  for (const std::string other : {"accuracy", "stress"}) {
+    std::filesystem::create_directory(folder_ / other);
+    write(other + "/" + other + ".json", "{}");
+    write(other + "/run.json", "{}");
+    for (const char* force : {"", " --force"})
+      expect_failure(batch + other + force, 1, {other + ": holds results of 'vestige " + other, "name another folder"},
+                     other + "/.lock");
+    EXPECT_EQ(read_text_file(folder_ / other / "run.json"), "{}");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / other / "items"));
+  }
+  ASSERT_EQ(run(batch + "out").exit_code, 0);
+  for (const std::string other : {"accuracy", "stress"})
+    expect_failure("vestige " + other + " --force -o out", 1, {"out: holds results of 'vestige batch'"},
+                   "out/" + other + ".json");
+  EXPECT_TRUE(json_in("out/run.json").contains("batch"));
 }
 
 TEST_F(BatchCommandLine, TwoInOneFolderAreNotLetIn) {

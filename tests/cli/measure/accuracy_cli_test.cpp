@@ -76,6 +76,17 @@ TEST_F(AccuracyCommandLine, HandsThatAreLaidOnTheSkinAreFeltForAsLongAsTheyTouch
   EXPECT_THAT(json_of(std::string(kSmall) + "--colliders still -o still --json -").dump(), Not(HasSubstr("touches")));
 }
 
+TEST_F(AccuracyCommandLine, MarksApproximateDetectorsInBothTables) {
+  const test::Outcome outcome =
+      run("vestige accuracy --detector boxes --rate 90 --truth-rate 4000 --duration 1.2 --events 1 --check-frames 5 "
+          "--passes 1 --no-figure --colliders rest --count 12 --method static -o rest");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  const std::size_t touches = outcome.standard_output.find("while a sphere touches");
+  ASSERT_NE(touches, std::string::npos) << outcome.standard_output;
+  EXPECT_THAT(outcome.standard_output.substr(0, touches), HasSubstr("\nboxes, static (approx.) "));
+  EXPECT_THAT(outcome.standard_output.substr(touches), HasSubstr("\nboxes, static (approx.) "));
+}
+
 TEST_F(AccuracyCommandLine, AddsSeedsUntilThereAreEnoughEventsAndComparesApproximateDetectors) {
   const test::Outcome outcome = run(
       "vestige accuracy --detector cpu,boxes,capsules,decimated --method static,ccd --rate 60,250 --truth-rate 4000 "

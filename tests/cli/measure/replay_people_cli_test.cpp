@@ -217,6 +217,10 @@ TEST_F(ReplayOfPeople, TakeTheMapsThatTheyAreGiven) {
   expect_failure("vestige replay two.mcap --map 3=torso40", 2, {"--map", "there is no person 3", "2 people"});
   expect_failure("vestige replay two.mcap --map 0=torso40", 2, {"--map", "people count from 1"});
   expect_failure("vestige replay two.mcap --map 2=", 2, {"--map", "names no map"});
+  for (const char* map : {"1.5=body", "K=torso40"})
+    expect_failure(std::string("vestige replay two.mcap --map ") + map, 2,
+                   {std::string("--map: '") + map + "': a person's number is expected", "--map 2=FILE.png"});
+  EXPECT_EQ(run("cp m.png K=m.png && vestige replay bob.mcap --map K=m.png").exit_code, 0) << "a file of that name";
   expect_failure("vestige replay two.mcap --map 2=torso40 --map 2=builtin", 2, {"--map", "person 2 gets two maps"});
   expect_failure("vestige replay two.mcap --map 2=absent.png", 1, {"absent.png"});
   expect_failure("vestige replay two.mcap --map-at 0.1=builtin", 2, {"--map-at", "2 people"});
