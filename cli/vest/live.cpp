@@ -239,8 +239,9 @@ void run_live_verb(const CLI::App& verb, LiveVerbOptions& options, Invocation& i
 
   LiveSession session = {.options = options, .people = loaded.people, .wearers = wearers};
   feel(*input, session, recorder.get());
-  finish(wearers);
+  finish(wearers);  // whatever came, the motors are off before anything can fail
   require_frame(session, plan);
+  commit(wearers);
   if (recorder) recorder->finish(session.result.notes);
   session.recorder = recorder.get();
   write_json(options.common.json, to_json(session, invocation), options.common);

@@ -61,6 +61,7 @@ PlaybackResult play_to(const Wearers& wearers, OpenTrace& trace, const std::stri
   };
   PlaybackResult result = play(trace.reader, people, options.playback, calls);
   finish(wearers);
+  commit(wearers);
   return result;
 }
 
