@@ -29,6 +29,7 @@
 #include "cli/vest/vests.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/host_port.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
@@ -57,6 +58,9 @@ struct LivePlan {
 
 /// OSC is what VMC is made of, so both schemes mean the same.
 HostPort place_of(const std::string& source) {
+  if (!source.starts_with("vmc://") && !source.starts_with("osc://"))
+    throw UsageError(kFromFlag.name, fmt::format("'{}' begins with neither vmc:// nor osc://", source),
+                     "name a host and a port: vmc://0.0.0.0:39539; or write -, for lines of JSON on standard input");
   return parse_host_port(source, source.starts_with("osc:") ? "osc" : "vmc", kFromFlag.name);
 }
 
@@ -68,7 +72,8 @@ std::vector<std::string> sources_of(const LiveVerbOptions& options) {
     const std::size_t person = value.person.value_or(0);
     if (person >= sources.size())
       throw UsageError(kFromFlag.name,
-                       fmt::format("person {} has a source, and {} people have one", value.number, sources.size()),
+                       fmt::format("person {} has a source, and there are sources for {}", value.number,
+                                   count_of_people(sources.size())),
                        "number people from 1 up: --from 1=URL --from 2=URL");
     if (value.value == kStandardInput && sources.size() > 1)
       throw UsageError(kFromFlag.name, "lines on standard input are of one person",

@@ -407,7 +407,10 @@ TEST_F(Live, AFailureKeepsTheFilesThatForceWouldReplace) {
 TEST_F(Live, FlagsThatSayNothingAreRefused) {
   for (const auto& [flags, cause] :
        {std::pair("--from vmc://localhost --port file:a", "has no port"),
-        std::pair("--from 2=vmc://127.0.0.1:9 --port file:a", "person 2 has a source, and 1 people have one"),
+        std::pair("--from nonsense --port file:a", "'nonsense' begins with neither vmc:// nor osc://"),
+        std::pair("--from tcp://127.0.0.1:9 --port file:a", "or write -, for lines of JSON on standard input"),
+        std::pair("--from 2=vmc://127.0.0.1:9 --port file:a",
+                  "person 2 has a source, and there are sources for 1 person"),
         std::pair("--from 1=vmc://127.0.0.1:9 --from 2=osc://127.0.0.1:9 --port 1=file:a",
                   "two people have the source"),
         std::pair("--from 1=- --from 2=vmc://127.0.0.1:9 --port 1=file:a", "lines on standard input are of one person"),
