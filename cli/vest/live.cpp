@@ -173,7 +173,8 @@ std::unique_ptr<LiveRecorder> open_recorder(const LivePlan& plan, const LiveVerb
                                                          .session = std::move(session),
                                                          .people = std::move(people),
                                                          .writing = writing,
-                                                         .limits = plan.limits},
+                                                         .limits = plan.limits,
+                                                         .snapshot_written = snapshot_teller(verbosity)},
                                         [verbosity](const std::string& text) { warn(text, verbosity); });
 }
 
