@@ -14,6 +14,7 @@
 #include "analysis/mapping/body.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/mapping/map_check.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
@@ -85,7 +86,8 @@ void add_problems(BatchMap& map, const ActuatorMap& parsed, const BatchPlan& pla
     if (finding.severity == Severity::kProblem && ++problems <= kMostTold)
       map.warnings.push_back(fmt::format("{}; {}", finding.cause, finding.remedy));
   if (problems > kMostTold)
-    map.warnings.push_back(fmt::format("and {} more problems; 'vestige map check' lists them", problems - kMostTold));
+    map.warnings.push_back(
+        fmt::format("and {}; 'vestige map check' lists them", counted(problems - kMostTold, "more problem")));
 }
 
 void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {

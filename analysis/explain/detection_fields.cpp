@@ -225,8 +225,10 @@ constexpr Field kSent[] = {
     {"maps_reloaded", "", "how often a changed map was read again"},
     {"floor_us", "us", "least time that the sender leaves between two frames; of several vests, the first one's"},
     {"latency_us/written/*", "us",
-     "from a change, over VMC from a frame's due time, until its last byte was written: median, 95 %, 99 %, most"},
-    {"latency_us/acknowledged/*", "us", "from a change until its answer: median, 95 %, 99 %, most; 0: no answers"},
+     "from a change, over VMC from a frame's due time, until its last byte was written: median, 95 %, 99 %, most; "
+     "null: "
+     "no changes"},
+    {"latency_us/acknowledged/*", "us", "from a change until its answer: median, 95 %, 99 %, most; null: no answers"},
 };
 
 constexpr Field kLive[] = {
@@ -250,12 +252,12 @@ constexpr Field kLive[] = {
     {"latency/arrival_to_detected/*", "ms", "until its contacts were found"},
     {"latency/arrival_to_written/*", "ms",
      "of changes, until the last byte was written; the line's own time (link/line_time_us) comes after that"},
-    {"latency/arrival_to_acknowledged/*", "ms", "of changes, until the board's answer; no counts: no answers"},
+    {"latency/arrival_to_acknowledged/*", "ms", "of changes, until the board's answer; null: no answers"},
     {"latency/pose_delay/*", "ms",
      "how late poses were shown, by --pose interpolate; a motion of the body waits for this besides"},
     {"latency/frame_interval/*", "ms",
-     "between two frames. Of each: p50_ms, p95_ms, p99_ms, max_ms; and a histogram: counts[i] took up to up_to_ms[i] "
-     "and longer than the class before, which is 1 % less"},
+     "between two frames, without a silence between them. Of each: p50_ms, p95_ms, p99_ms, max_ms, null if count is 0; "
+     "and a histogram: counts[i] took up to up_to_ms[i] and longer than the class before, which is 1 % less"},
     {"real_time", "", "null: without --realtime"},
     {"real_time/priority", "", "priority by SCHED_FIFO; null: refused"},
     {"real_time/memory_locked", "", "true: no page leaves memory"},

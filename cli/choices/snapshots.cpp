@@ -1,6 +1,10 @@
 #include "cli/choices/snapshots.hpp"
 
+#include <fmt/format.h>
+
 #include <csignal>
+
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 
@@ -22,6 +26,13 @@ bool snapshot_wanted() {
   if (snapshot_seen == 0) return false;
   snapshot_seen = 0;
   return true;
+}
+
+std::function<void(const std::filesystem::path&, double)> snapshot_teller(Verbosity verbosity) {
+  if (verbosity == Verbosity::kQuiet) return {};
+  return [](const std::filesystem::path& path, double seconds) {
+    print_message(fmt::format("vestige: wrote {}: the last {:.2f} s\n", printable(path.string()), seconds));
+  };
 }
 
 }  // namespace vestige::cli

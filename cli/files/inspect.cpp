@@ -107,8 +107,9 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
   text += fmt::format("{} in {:.3f} s, {}, {} bytes\n", counted(summary.messages, "message"), summary.duration_s,
                       counted(summary.chunks, "chunk"), summary.file_bytes);
   for (const auto& channel : summary.channels)
-    text += fmt::format("  {:<20} {:>9} messages {:>10.1f} Hz  {} ({})\n", channel.topic, channel.messages,
-                        channel.rate_hz, channel.schema, channel.encoding);
+    text +=
+        fmt::format("  {:<20} {:>9} {:<8} {:>10.1f} Hz  {} ({})\n", channel.topic, channel.messages,
+                    channel.messages == 1 ? "message" : "messages", channel.rate_hz, channel.schema, channel.encoding);
   for (const auto& attachment : summary.attachments)
     text += fmt::format("  {:<20} {:>9} bytes     sha256 {}{}\n", attachment.name, attachment.bytes, attachment.sha256,
                         attachment.is_recorded.value_or(true) ? "" : " (not the recorded one)");

@@ -275,7 +275,8 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
                      .session = session_of(options, people, invocation),
                      .people = recorded_people(people),
                      .writing = writing_of(options, colliders.get(), limbs ? &*limbs : nullptr),
-                     .limits = limits});
+                     .limits = limits,
+                     .snapshot_written = snapshot_teller(verbosity)});
   RecordingResult result;
   if (options.live.is_live()) {
     const auto duration_s = options.has_duration ? std::optional(settings.duration_s) : std::nullopt;

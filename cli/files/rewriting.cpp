@@ -9,6 +9,7 @@
 #include "analysis/base/provenance.hpp"
 #include "cli/files/export_formats.hpp"
 #include "traces/base/nanoseconds.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/trace_file/trace_index.hpp"
 
@@ -58,8 +59,8 @@ void run_rewrite(const std::string& file, const std::string& output, const Rewri
                                                {"bytes", result.bytes},
                                                {"complete", result.damages.empty()}}),
              common);
-  print_summary(fmt::format("{}: {} messages from {} to {} s, {} bytes ({} before)\n", output, result.messages, start_s,
-                            end_s, result.bytes, source.size()),
+  print_summary(fmt::format("{}: {} from {} to {} s, {} bytes ({} before)\n", output,
+                            counted(result.messages, "message"), start_s, end_s, result.bytes, source.size()),
                 {output, common.json}, common);
   if (!result.damages.empty()) invocation.exit_code = kDataLost;
 }

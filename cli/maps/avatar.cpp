@@ -13,6 +13,7 @@
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/gltf/clean/clean_avatar.hpp"
 #include "traces/motion/animation_choice.hpp"
@@ -72,10 +73,10 @@ std::string overlap_text(const UvCoverage& coverage) {
 std::string summary(const std::string& name, const nlohmann::ordered_json& json, const Avatar& avatar,
                     const UvCoverage& coverage) {
   const auto number = [&](const char* corner, std::size_t axis) { return json["bounds"][corner][axis].get<double>(); };
-  std::string text =
-      fmt::format("{}: {} triangles, {} vertices in {} places, {} joints, up to {} influences per vertex\n", name,
-                  avatar.triangles.size(), avatar.position_bind.size(), json["welded_vertices"].get<std::size_t>(),
-                  avatar.joint_count, avatar.influence_count);
+  std::string text = fmt::format("{}: {}, {} vertices in {}, {}, up to {} per vertex\n", name,
+                                 counted(avatar.triangles.size(), "triangle"), avatar.position_bind.size(),
+                                 counted(json["welded_vertices"].get<std::size_t>(), "place"),
+                                 counted(avatar.joint_count, "joint"), counted(avatar.influence_count, "influence"));
   text += fmt::format(
       "  bounding box   x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} (rest pose; glTF: metres)\n",
       number("min", 0), number("max", 0), number("min", 1), number("max", 1), number("min", 2), number("max", 2));

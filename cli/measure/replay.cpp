@@ -80,7 +80,7 @@ PlaneSet parse_planes(const std::string& text) {
 void warn_of_gaps(const ReplayResult& result, const OpenTrace& trace, const std::vector<TimedMap>& timed_maps,
                   const ReplayOptions& options) {
   const Verbosity verbosity = options.common.verbosity();
-  if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
+  if (result.interrupted) warn("stopped after " + counted(result.frames, "frame"), verbosity);
   for (std::size_t i = result.people.front().map_changes; i < timed_maps.size() && !result.interrupted; ++i)
     warn(fmt::format("--map-at {}={}: the trace ends before that time", timed_maps[i].time_s, timed_maps[i].file),
          verbosity);

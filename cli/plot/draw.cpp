@@ -23,6 +23,7 @@
 #include "cli/options.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/motion/animation_choice.hpp"
 #include "traces/scene/people.hpp"
@@ -321,10 +322,10 @@ int draw_paraview(const Options& options) {
   const int damage = report_damage(options, trace);
   if (result.frames == 0) require_frames(trace, input.string());
   series.commit();
-  if (result.interrupted) warn(options, fmt::format("stopped after {} frames", result.frames));
+  if (result.interrupted) warn(options, "stopped after " + counted(result.frames, "frame"));
   if (!options.quiet)
-    print_message(fmt::format("wrote {}.pvd: {} time steps from {} frames, {} contacts\n", stem.string(),
-                              series.steps(), result.frames, result.contacts));
+    print_message(fmt::format("wrote {}.pvd: {} from {}, {}\n", stem.string(), counted(series.steps(), "time step"),
+                              counted(result.frames, "frame"), counted(result.contacts, "contact")));
   return result.interrupted ? cli::kDataLost : damage;
 }
 

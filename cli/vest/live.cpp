@@ -29,6 +29,7 @@
 #include "cli/vest/vests.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/host_port.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
@@ -57,6 +58,9 @@ struct LivePlan {
 
 /// OSC is what VMC is made of, so both schemes mean the same.
 HostPort place_of(const std::string& source) {
+  if (!source.starts_with("vmc://") && !source.starts_with("osc://"))
+    throw UsageError(kFromFlag.name, fmt::format("'{}' begins with neither vmc:// nor osc://", source),
+                     "name a host and a port: vmc://0.0.0.0:39539; or write -, for lines of JSON on standard input");
   return parse_host_port(source, source.starts_with("osc:") ? "osc" : "vmc", kFromFlag.name);
 }
 
@@ -68,7 +72,8 @@ std::vector<std::string> sources_of(const LiveVerbOptions& options) {
     const std::size_t person = value.person.value_or(0);
     if (person >= sources.size())
       throw UsageError(kFromFlag.name,
-                       fmt::format("person {} has a source, and {} people have one", value.number, sources.size()),
+                       fmt::format("person {} has a source, and there are sources for {}", value.number,
+                                   count_of_people(sources.size())),
                        "number people from 1 up: --from 1=URL --from 2=URL");
     if (value.value == kStandardInput && sources.size() > 1)
       throw UsageError(kFromFlag.name, "lines on standard input are of one person",
@@ -168,7 +173,8 @@ std::unique_ptr<LiveRecorder> open_recorder(const LivePlan& plan, const LiveVerb
                                                          .session = std::move(session),
                                                          .people = std::move(people),
                                                          .writing = writing,
-                                                         .limits = plan.limits},
+                                                         .limits = plan.limits,
+                                                         .snapshot_written = snapshot_teller(verbosity)},
                                         [verbosity](const std::string& text) { warn(text, verbosity); });
 }
 
@@ -239,8 +245,9 @@ void run_live_verb(const CLI::App& verb, LiveVerbOptions& options, Invocation& i
 
   LiveSession session = {.options = options, .people = loaded.people, .wearers = wearers};
   feel(*input, session, recorder.get());
-  finish(wearers);
+  finish(wearers);  // whatever came, the motors are off before anything can fail
   require_frame(session, plan);
+  commit(wearers);
   if (recorder) recorder->finish(session.result.notes);
   session.recorder = recorder.get();
   write_json(options.common.json, to_json(session, invocation), options.common);

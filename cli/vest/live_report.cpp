@@ -24,11 +24,14 @@ namespace {
 
 /// Quantiles and counts, in milliseconds.
 nlohmann::ordered_json stage_json(const LatencyHistogram& latency) {
-  nlohmann::ordered_json json = {{"p50_ms", latency.quantile_us(0.5) / 1e3},
-                                 {"p95_ms", latency.quantile_us(0.95) / 1e3},
-                                 {"p99_ms", latency.quantile_us(0.99) / 1e3},
-                                 {"max_ms", latency.max_us() / 1e3},
-                                 {"count", latency.count()}};
+  nlohmann::ordered_json json = {
+      {"p50_ms", nullptr}, {"p95_ms", nullptr}, {"p99_ms", nullptr}, {"max_ms", nullptr}, {"count", latency.count()}};
+  if (latency.count() != 0) {
+    json["p50_ms"] = latency.quantile_us(0.5) / 1e3;
+    json["p95_ms"] = latency.quantile_us(0.95) / 1e3;
+    json["p99_ms"] = latency.quantile_us(0.99) / 1e3;
+    json["max_ms"] = latency.max_us() / 1e3;
+  }
   json["up_to_ms"] = nlohmann::ordered_json::array();
   json["counts"] = nlohmann::ordered_json::array();
   latency.for_each_class([&](double upper_us, std::uint64_t count) {
@@ -129,7 +132,8 @@ std::string summary(const LiveSession& session) {
       fmt::format("{} in {:.2f} s, {}; {} superseded by newer ones\n", counted(result.frames, "frame"),
                   result.duration_s, counted(contacts_of(result), "contact"), counted(result.superseded, "frame"));
   if (session.options.rate_hz) text += fmt::format("{} missed\n", counted(result.missed_deadlines, "deadline"));
-  text += fmt::format("time between frames:          {}\n", describe(session.latency.interval));
+  if (session.latency.interval.count() != 0)
+    text += fmt::format("time between frames:          {}\n", describe(session.latency.interval));
   if (session.latency.pose_delay.max_us() > 0)
     text += fmt::format("poses shown late by:          {}\n", describe(session.latency.pose_delay));
   text += fmt::format("arrival to decoded:           {}\n", describe(session.latency.decoded));

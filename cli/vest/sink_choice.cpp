@@ -322,7 +322,7 @@ void OpenSink::commit() {
 std::string OpenSink::radio_failure() const {
   const XbeeUnwrapper* radio = serial_ == nullptr ? nullptr : serial_->radio();
   if (radio == nullptr || radio->undelivered() == 0) return "";
-  return fmt::format("the radio could not deliver {} packets: {}", radio->undelivered(),
+  return fmt::format("the radio could not deliver {}: {}", counted(radio->undelivered(), "packet"),
                      xbee_failure(radio->last_failure()));
 }
 
@@ -359,9 +359,9 @@ std::string OpenSink::describe_link(std::uint64_t bytes) const {
   if (bhaptics_ != nullptr)
     return fmt::format("{}: {} bytes in {}\n", sink_->name(), bytes, counted(bhaptics_->texts_sent(), "text"));
   if (choice_.is_file()) return fmt::format("{}: {} bytes\n", sink_->name(), bytes);
-  const std::string board =
-      greeting_ ? fmt::format("board version {}, {} actuators", greeting_->version, greeting_->actuator_count)
-                : "no board answered";
+  const std::string board = greeting_ ? fmt::format("board version {}, {}", greeting_->version,
+                                                    counted(greeting_->actuator_count, "actuator"))
+                                      : "no board answered";
   return fmt::format("{}: {}; {} bytes at {} baud, a frame of {} bytes takes {:.2f} ms on the line\n", choice_.port,
                      board, bytes, choice_.baud, frame_bytes_, line_time_s() * 1e3);
 }

@@ -21,6 +21,7 @@
 #include "cli/vest/wearer.hpp"
 #include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -61,6 +62,7 @@ PlaybackResult play_to(const Wearers& wearers, OpenTrace& trace, const std::stri
   };
   PlaybackResult result = play(trace.reader, people, options.playback, calls);
   finish(wearers);
+  commit(wearers);
   return result;
 }
 
@@ -98,7 +100,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   const int losses = report_losses(streamed);
   const int damage = report_damage(trace.reader, options.trace, verbosity);
   const bool cut_short = interrupted() && !options.playback.loop;
-  if (cut_short) warn(fmt::format("stopped after {} frames", streamed.playback.frames), verbosity);
+  if (cut_short) warn("stopped after " + counted(streamed.playback.frames, "frame"), verbosity);
   invocation.exit_code =
       losses != kDone || damage != kDone || cut_short || streamed.playback.fell_behind() ? kDataLost : kDone;
 }

@@ -110,4 +110,8 @@ void finish(const Wearers& wearers) {
   for (const auto& wearer : wearers) wearer->finish();
 }
 
+void commit(const Wearers& wearers) {
+  for (const auto& wearer : wearers) wearer->commit();
+}
+
 }  // namespace vestige::cli

@@ -42,7 +42,10 @@ std::vector<DetectedPerson> detected_people(const Wearers& wearers);
 /// Makes a law for each wearer.
 std::vector<LawMaker::Law> make_laws(const Wearers& wearers);
 
-/// Switches all vests off, and finishes their files. Nobody waits for the answers of another's vest.
+/// Switches all vests off. Nobody waits for the answers of another's vest.
 void finish(const Wearers& wearers);
+
+/// Gives the files of all vests their names, after `finish`.
+void commit(const Wearers& wearers);
 
 }  // namespace vestige::cli

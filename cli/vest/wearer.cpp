@@ -67,6 +67,9 @@ void Wearer::take(const ActuatorFrame& frame, Sender::Clock::time_point due) {
 void Wearer::finish() {
   sent_ = sender_->finish();
   if (log_) log_->write(sender_->take_log());
+}
+
+void Wearer::commit() {
   sink_->commit();
   if (log_) log_->commit();
 }

@@ -54,8 +54,11 @@ class Wearer {
 
   /// Begins to switch the vest off, without waiting for its answers.
   void stop() { sender_->stop(); }
-  /// Waits until the vest is off, and finishes the files.
+  /// Waits until the vest is off.
   void finish();
+  /// Gives the files of frames and states their names. Without this call they leave nothing behind. Precondition:
+  /// `finish` was called.
+  void commit();
 
   const SenderStatistics& sent() const { return sent_; }
   std::uint64_t maps_reloaded() const { return maps_reloaded_; }

@@ -17,6 +17,7 @@ const char* off_at_end(const SenderStatistics& sender, const ActuatorSink& sink)
 }  // namespace
 
 nlohmann::ordered_json to_json(const LatencyHistogram& latency) {
+  if (latency.count() == 0) return {{"p50", nullptr}, {"p95", nullptr}, {"p99", nullptr}, {"max", nullptr}};
   return {{"p50", latency.quantile_us(0.5)},
           {"p95", latency.quantile_us(0.95)},
           {"p99", latency.quantile_us(0.99)},

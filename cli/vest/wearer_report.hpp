@@ -14,7 +14,8 @@
 
 namespace vestige::cli {
 
-/// Median, 95 %, 99 % and most, in microseconds; and the same for people, in milliseconds.
+/// Median, 95 %, 99 % and most, in microseconds, null if there are no latencies; and the same for people, in
+/// milliseconds. Precondition of the latter: there are some.
 nlohmann::ordered_json to_json(const LatencyHistogram& latency);
 std::string describe(const LatencyHistogram& latency);
 

@@ -210,6 +210,7 @@ TEST_F(LiveRing, GivesASnapshotWhenAskedWhileDatagramsArrive) {
   }
   recorder.signal(SIGTERM);
   EXPECT_THAT(recorder.wait(), AnyOf(0, 3)) << read_text_file(folder_ / "error");  // 3: frames came too late
+  EXPECT_THAT(read_text_file(folder_ / "error"), HasSubstr("last-0001.mcap: the last "));
   const auto frames = [&](const char* trace) {
     return json_of(fmt::format("vestige replay {} --json -", (folder_ / trace).string()))["frames"].get<int>();
   };

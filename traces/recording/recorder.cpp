@@ -258,12 +258,18 @@ void Recorder::Implementation::snapshot() {
   files_.push_back(path);
   snapshot_ = std::async(std::launch::async, [this, path, contents = ring_->contents()] {
     const auto writer = open(path);
+    std::optional<std::int64_t> first_ns;
+    std::int64_t last_ns = 0;
     contents.for_each([&](const RecordingNote& note) { note_in(*writer, note); },
                       [&](const TraceFrame& frame) {
                         writer->write(frame);
+                        last_ns = frame.time_ns;
+                        if (!first_ns) first_ns = last_ns;
                         return true;
                       });
     writer->finish();
+    if (target_.snapshot_written)
+      target_.snapshot_written(path, static_cast<double>(last_ns - first_ns.value_or(0)) / kNanosecondsPerSecond);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -35,6 +36,8 @@ class Recorder {
     std::vector<TracePerson> people;  ///< the caller keeps avatars and bytes alive
     TraceWriterOptions writing;
     RecordingLimits limits;
+    /// Takes the path of a snapshot that was written, and how many seconds it holds. Is called in another thread.
+    std::function<void(const std::filesystem::path&, double)> snapshot_written = {};
   };
 
   /// Also throws `Error` if parts of an earlier recording exist (with `Overwrite::kRefuse`), or other files have the

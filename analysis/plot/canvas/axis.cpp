@@ -57,6 +57,10 @@ std::string grouped(double value) {
   return digits;
 }
 
+std::string grouped_count(double count, std::string_view thing) {
+  return fmt::format("{} {}{}", grouped(count), thing, count == 1 ? "" : "s");
+}
+
 std::vector<Tick> linear_ticks(double low, double high, int wanted, double least_step) {
   const double step = std::max(least_step, round_up_125((high - low) / wanted));
   const auto first = static_cast<std::int64_t>(std::ceil(low / step - kSlack));

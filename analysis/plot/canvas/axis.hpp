@@ -39,6 +39,8 @@ std::vector<Tick> log_ticks(double low, double high);
 
 /// Returns digits in groups with narrow spaces: 12345 as "12 345".
 std::string grouped(double value);
+/// "1 contact", "12 345 contacts"
+std::string grouped_count(double count, std::string_view thing);
 
 /// The type size of tick labels.
 inline constexpr int kTickTypePt = 7;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
 
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 
@@ -59,7 +61,7 @@ GrowthResult crowd_growth(const Sweeps& sweeps) {
   GrowthResult result;
   for (const double count : counts) {
     GrowthPanel& panel = result.panels.emplace_back();
-    panel.title = fmt::format("{:.0f} colliders around each copy", count);
+    panel.title = counted(static_cast<std::uint64_t>(count), "collider") + " around each copy";
     panel.along = "Number of people";
     for (const SweepSeries& series : sweeps.series)
       for (const SweepPoint& point : series.points)

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "analysis/base/json_field.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 
@@ -92,7 +94,7 @@ GrowthResult read_growth(const std::filesystem::path& folder) {
   }
   finish(by_colliders);
   finish(by_triangles);
-  by_triangles.title = fmt::format("{:.0f} colliders", document.at("colliders").within(1, kMostSize));
+  by_triangles.title = counted(static_cast<std::uint64_t>(document.at("colliders").within(1, kMostSize)), "collider");
   if (document.has("machine"))
     result.machine = phrase(document.at("machine"), {{"processor", ""}, {"cores", " cores"}});
   result.avatar = phrase(document.at("avatar"), {{"triangles", " triangles"}, {"vertices", " vertices"}});

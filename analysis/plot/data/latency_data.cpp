@@ -20,10 +20,10 @@ constexpr std::array<std::pair<const char*, const char*>, 4> kStages = {{{"arriv
 LatencyLine read_line(const JsonField& stage, const char* name) {
   LatencyLine line;
   line.stage = name;
-  line.p50_ms = stage.at("p50_ms").within(0, kMost);
-  line.p99_ms = stage.at("p99_ms").within(0, kMost);
   line.count = stage.at("count").within(0, kMost);
   if (line.count == 0) return line;
+  line.p50_ms = stage.at("p50_ms").within(0, kMost);
+  line.p99_ms = stage.at("p99_ms").within(0, kMost);
   const JsonField up_to_ms = stage.at("up_to_ms");
   const JsonField counts = stage.at("counts");
   if (counts.count() != up_to_ms.count()) counts.refuse("has not as many numbers as up_to_ms");

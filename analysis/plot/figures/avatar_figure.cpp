@@ -10,6 +10,7 @@
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/studio/studio.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/motion/animation_choice.hpp"
 
 namespace vestige::plot {
@@ -53,10 +54,10 @@ struct Block {
 class AvatarFigure : public Figure {
  public:
   explicit AvatarFigure(const ContactSheet& sheet)
-      : title_(fmt::format("{}: {} triangles, {} vertices, {} joints", sheet.subject.title,
+      : title_(fmt::format("{}: {} triangles, {} vertices, {}", sheet.subject.title,
                            grouped(static_cast<double>(sheet.subject.avatar.triangles.size())),
                            grouped(static_cast<double>(sheet.subject.avatar.position_bind.size())),
-                           sheet.subject.avatar.joint_count)) {
+                           counted(sheet.subject.avatar.joint_count, "joint"))) {
     const SurfacePoser poser(sheet.subject.avatar);
     for (const Animation* animation : sheet.animations) blocks_.push_back(block_of(sheet, poser, animation));
     lay_out();

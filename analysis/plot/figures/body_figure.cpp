@@ -16,6 +16,7 @@
 #include "analysis/plot/studio/contact_density.hpp"
 #include "analysis/plot/studio/region_image.hpp"
 #include "analysis/plot/studio/studio.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 
@@ -66,9 +67,9 @@ class BodyFigure : public Figure {
     return kTitleRoomPt + static_cast<double>(rows()) * row_height_pt() + legend_height_pt() + kFootPt;
   }
   std::string description() const override {
-    return fmt::format("{}: {} actuator regions on the avatar{}.", body_.subject.title,
-                       body_.subject.map.actuator_count,
-                       body_.has_contacts ? fmt::format(", {} contacts and their density", body_.contacts.size()) : "");
+    return fmt::format("{}: {} on the avatar{}.", body_.subject.title,
+                       counted(body_.subject.map.actuator_count, "actuator region"),
+                       body_.has_contacts ? fmt::format(", {} and the density of contacts", contacts_in_words()) : "");
   }
 
   void draw(Canvas& canvas) const override {
@@ -107,12 +108,9 @@ class BodyFigure : public Figure {
 
   std::string map_title() const {
     if (body_.subject.map.actuator_count == 0) return "No actuator map";
-    return fmt::format("Actuator map, {} regions", body_.subject.map.actuator_count);
+    return "Actuator map, " + counted(body_.subject.map.actuator_count, "region");
   }
-  std::string contacts_in_words() const {
-    return body_.contacts.size() == 1 ? "1 contact"
-                                      : fmt::format("{} contacts", grouped(static_cast<double>(body_.contacts.size())));
-  }
+  std::string contacts_in_words() const { return grouped_count(static_cast<double>(body_.contacts.size()), "contact"); }
 
   void make_pictures() {
     const std::size_t count = body_.subject.map.actuator_count;

@@ -10,6 +10,7 @@
 #include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 
@@ -69,8 +70,8 @@ class MeasuredFigure : public Figure {
     return kAxisRoomPt + static_cast<double>(commanded_.actuator_count) * kLanePt + kLegendRoomPt;
   }
   std::string description() const override {
-    return fmt::format("Commanded and measured duties of {} actuators over {:.3g} s.", commanded_.actuator_count,
-                       end_s_ - begin_s_);
+    return fmt::format("Commanded and measured duties of {} over {:.3g} s.",
+                       counted(commanded_.actuator_count, "actuator"), end_s_ - begin_s_);
   }
 
   void draw(Canvas& canvas) const override {

@@ -26,7 +26,7 @@ constexpr Colour kPathColour = kBlue;
 constexpr Colour kContactColour = kVermillion;
 
 std::string in_words(std::size_t count, std::string_view what) {
-  return fmt::format("{} {}{}", grouped(static_cast<double>(count)), what, count == 1 ? "" : "s");
+  return grouped_count(static_cast<double>(count), what);
 }
 
 /// All colliders of the moments, ascending.

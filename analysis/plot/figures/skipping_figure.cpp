@@ -91,7 +91,8 @@ class SkippingFigure : public Figure {
 
  private:
   static std::string details(const SkippingGroup& group) {
-    std::string text = fmt::format("{} colliders, {} \u00b5s a frame", grouped(group.colliders), shown(group.us));
+    std::string text =
+        fmt::format("{}, {} \u00b5s a frame", grouped_count(group.colliders, "collider"), shown(group.us));
     if (group.us_off > 0) text += fmt::format("; without skipping {}", shown(group.us_off));
     return text;
   }

@@ -98,7 +98,7 @@ class StageFigure : public Figure {
     std::string text = "Where the time of a frame goes, in microseconds.";
     for (const StageGroup& group : result_.groups) {
       const StageBar& bar = group.bars.back();
-      text += fmt::format(" {}, {:.0f} colliders:", title(group), bar.colliders);
+      text += fmt::format(" {}, {}:", title(group), grouped_count(bar.colliders, "collider"));
       for (std::size_t i = 0; i < kLooks.size(); ++i)
         if (bar.stages.us[i] > 0) text += fmt::format(" {} {},", kLooks[i].name, shown_us(bar.stages.us[i]));
       text += fmt::format(" together {}.", shown_us(total_of(bar)));

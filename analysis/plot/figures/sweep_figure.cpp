@@ -152,7 +152,7 @@ class SweepFigure : public Figure {
         fmt::format("Detection frequency over number of colliders. Published: {}. Measured:", kPublishedName);
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const SweepPoint& last = sweeps_.series[i].points.back();
-      text += fmt::format(" {} ({:.4g} Hz at {} colliders).", names_[i], last.hz, last.colliders);
+      text += fmt::format(" {} ({:.4g} Hz at {}).", names_[i], last.hz, grouped_count(last.colliders, "collider"));
     }
     return text;
   }

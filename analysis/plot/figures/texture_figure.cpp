@@ -9,6 +9,7 @@
 #include "analysis/colours/palette.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/colour_bar.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 
@@ -58,8 +59,8 @@ class TextureFigure : public Figure {
   double width_pt() const override { return kWidthPt; }
   double height_pt() const override { return kAxisRoomPt + plot_height_pt() + kTopPt; }
   std::string description() const override {
-    return fmt::format("Collision textures of {} frames and {} colliders with {} contacts.", textures_.frames,
-                       textures_.colliders, textures_.contacts.size());
+    return fmt::format("Collision textures of {} and {} with {}.", counted(textures_.frames, "frame"),
+                       counted(textures_.colliders, "collider"), counted(textures_.contacts.size(), "contact"));
   }
 
   void draw(Canvas& canvas) const override {

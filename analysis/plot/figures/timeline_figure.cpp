@@ -12,6 +12,7 @@
 #include "analysis/plot/canvas/duty_raster.hpp"
 #include "traces/base/csv.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige::plot {
@@ -41,8 +42,8 @@ class TimelineFigure : public Figure {
   double width_pt() const override { return kWidthPt; }
   double height_pt() const override { return kAxisRoomPt + plot_height_pt() + kTopPt; }
   std::string description() const override {
-    return fmt::format("Duty of {} actuators over {:.3g} s, {} frames.", timeline_.actuator_count,
-                       end_s() - timeline_.time_s.front(), timeline_.time_s.size());
+    return fmt::format("Duty of {} over {:.3g} s, {}.", counted(timeline_.actuator_count, "actuator"),
+                       end_s() - timeline_.time_s.front(), counted(timeline_.time_s.size(), "frame"));
   }
 
   void draw(Canvas& canvas) const override {

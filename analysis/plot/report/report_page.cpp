@@ -129,11 +129,10 @@ class Page {
       contacts += trace.contacts;
       frames += trace.frames;
     }
-    add(out_,
-        "<p>Compared: {} × {} over {} ({} frames, {} contacts), by the mean over traces of {}{}; {} is better.</p>\n",
+    add(out_, "<p>Compared: {} × {} over {} ({}, {}), by the mean over traces of {}{}; {} is better.</p>\n",
         counted(data_.maps().size(), "map"), counted(data_.laws.size(), "intensity law"),
-        counted(data_.traces.size(), "trace"), grouped(frames), grouped(contacts), words,
-        metric.unit.empty() ? "" : fmt::format(" in {}", html_text(metric.unit)), html_text(metric.better));
+        counted(data_.traces.size(), "trace"), grouped_count(frames, "frame"), grouped_count(contacts, "contact"),
+        words, metric.unit.empty() ? "" : fmt::format(" in {}", html_text(metric.unit)), html_text(metric.better));
     cautions();
   }
 
@@ -278,7 +277,7 @@ class Page {
         "together.</p>\n",
         counted(map.actuators.size(), "actuator"), html_text(best.law),
         html_text(estimate_text(best.headline, headline())), percent(map.contacts - map.unmapped, map.contacts),
-        counted_contacts(map.contacts));
+        grouped_count(static_cast<double>(map.contacts), "contact"));
     for (const std::string& warning : map.warnings) add(out_, "<p class=\"caution\">{}</p>\n", html_text(warning));
     if (map.view) watch(*map.view, best);
     out_ += "<div class=\"figures\">\n";
@@ -310,10 +309,6 @@ class Page {
         gone.empty() ? "" : fmt::format(", if {} is left out, whose file is gone or has changed", gone);
     add(out_, "<p><a href=\"{}\">Watch it move</a>: the trace <strong>{}</strong>, {}{}.</p>\n", html_text(view.file),
         html_text(view.trace), why, but);
-  }
-
-  static std::string counted_contacts(std::size_t count) {
-    return fmt::format("{} contact{}", grouped(static_cast<double>(count)), count == 1 ? "" : "s");
   }
 
   void actuators(const MapSection& map) {

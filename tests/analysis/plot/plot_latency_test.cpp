@@ -20,7 +20,7 @@ using ::testing::Not;
 class PlotLatency : public PlotTest {
  protected:
   void write_session(const std::string& detected_counts, const std::string& stages = "") const {
-    const std::string none = R"({"p50_ms": 0, "p99_ms": 0, "count": 0, "up_to_ms": [], "counts": []})";
+    const std::string none = R"({"p50_ms": null, "p99_ms": null, "count": 0, "up_to_ms": [], "counts": []})";
     write_text(folder_ / "live.json",
                R"({"commit": "0123456789abcdef", "machine": {"processor": "Fast & Cool 9000"}, "floor_us": 5000,
       "link": {"port": "/dev/vest", "line_time_us": 2430}, "latency": {

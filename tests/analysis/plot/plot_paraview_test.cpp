@@ -124,6 +124,11 @@ TEST_F(ParaviewTest, NamesTheActuatorsAndGivesTheMapsTextureCoordinates) {
   EXPECT_NE(skin->GetPointData()->GetTCoords(), nullptr);
 }
 
+TEST_F(ParaviewTest, SaysOfOneStepThatItIsOne) {
+  record("--rate 10 --duration 0.1");
+  EXPECT_THAT(run("paraview man.mcap").standard_error, HasSubstr("man.pvd: 1 time step from 1 frame, 0 contacts"));
+}
+
 TEST_F(ParaviewTest, LeavesWhatIsThereAloneUnlessForced) {
   record("--colliders still --rate 20 --duration 0.5");
   ASSERT_EQ(run("paraview man.mcap --every 1").exit_code, 0);

@@ -231,14 +231,17 @@ TEST_F(ReportTest, EqualFoldersGiveEqualBytes) {
 
 TEST_F(ReportTest, OneTraceHasNoInterval) {
   run_["traces"].erase(1);
+  run_["traces"][0]["frames"] = 1;
+  run_["traces"][0]["contacts"] = 1;
   ranking_["ranking"] = {candidate(1, "box", "phantom", 12.5, false, 1), candidate(2, "box", "binary", 20, false, 1)};
   for (nlohmann::json& one : ranking_["ranking"])
     for (const char* end : {"low", "high"}) one["headline"][end] = nullptr;
   ranking_["interval"] = nullptr;
   ranking_["why_no_intervals"] = "there is only 1 file";
   ASSERT_EQ(report().exit_code, 0);
-  EXPECT_THAT(page(), AllOf(HasSubstr("12.5\u00a0mm (one trace)"), HasSubstr("no intervals: there is only 1 file"),
-                            Not(HasSubstr("class=\"level\""))));
+  EXPECT_THAT(page(),
+              AllOf(HasSubstr("12.5\u00a0mm (one trace)"), HasSubstr("no intervals: there is only 1 file"),
+                    HasSubstr("over 1 trace (1 frame, 1 contact), by the mean"), Not(HasSubstr("class=\"level\""))));
 }
 
 TEST_F(ReportTest, MapsAndTracesWithoutAContactAreShown) {

@@ -107,6 +107,11 @@ TEST_F(Files, TheTextureHashSurvivesRecompressTrimAndMerge) {
   EXPECT_EQ(hash_of("whole.mcap"), hash);
 }
 
+TEST_F(Files, OneMessageIsNotSeveral) {
+  ASSERT_EQ(run("vestige record -q --rate 10 --duration 0.1 -o one.mcap").exit_code, 0);
+  EXPECT_THAT(run("vestige inspect one.mcap").standard_output, HasSubstr("/pose                        1 message  "));
+}
+
 TEST_F(Files, MergeRefusesAnotherRecordingWithTheReason) {
   ASSERT_EQ(run("vestige record --count 20 --rate 100 --duration 1 --seed 2 -o b.mcap").exit_code, 0);
   expect_failure("vestige merge a.mcap b.mcap -o c.mcap", 1,

@@ -143,6 +143,8 @@ def main():
           f"{session['contacts']} contacts, {session['changes']} changes, {session['lost']} lost")
     print(f"memory after a tenth of the time {memory[0]:.1f} MB, at the end {memory[1]:.1f} MB")
     for stage, values in session["latency"].items():
+        if values["count"] == 0:
+            continue
         print(f"{stage:<24} " + "  ".join(f"{name} {values[name]:8.3f}" for name in ("p50_ms", "p95_ms", "p99_ms", "max_ms")))
 
 

@@ -119,6 +119,23 @@ TEST_F(Live, LatencyIsToldAtEveryStage) {
   EXPECT_EQ(latency["pose_delay"]["max_ms"], 0) << "each frame has its pose, the first one, too";
 }
 
+TEST_F(Live, WhatWasNeverMeasuredIsNotToldAsZero) {
+  const test::Outcome outcome = run("echo '{}' | vestige live --from - --port file:felt --json live.json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_output, ::testing::Not(HasSubstr("time between frames")));
+  const auto json = json_in("live.json");
+  EXPECT_EQ(json["frames"], 1);
+  EXPECT_EQ(json["latency"]["arrival_to_decoded"]["count"], 1);
+  EXPECT_TRUE(json["latency"]["arrival_to_decoded"]["p50_ms"].is_number());
+  for (const char* stage : {"frame_interval", "arrival_to_acknowledged"}) {
+    const auto& of = json["latency"][stage];
+    EXPECT_EQ(of["count"], 0) << stage;
+    for (const char* key : {"p50_ms", "p95_ms", "p99_ms", "max_ms"}) EXPECT_TRUE(of.at(key).is_null()) << stage << key;
+  }
+  for (const char* key : {"p50", "p95", "p99", "max"})
+    EXPECT_TRUE(json["latency_us"]["acknowledged"].at(key).is_null()) << key;
+}
+
 TEST_F(Live, ASourceThatIsKilledLeavesNothingOn) {
   record_walk();
   const auto session = live({"--hold", "10000"});
@@ -374,13 +391,26 @@ TEST_F(Live, NobodyWhoSendsIsAnError) {
   session->signal(SIGINT);
   EXPECT_EQ(session->wait(), 1);
   EXPECT_THAT(told(), HasSubstr("no whole frame arrived, so nothing was felt"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "felt.mcap"));
+  for (const char* file : {"felt.mcap", "felt", "log.csv", "live.json"})
+    EXPECT_FALSE(std::filesystem::exists(folder_ / file)) << file;
+}
+
+TEST_F(Live, AFailureKeepsTheFilesThatForceWouldReplace) {
+  for (const char* file : {"felt", "log.csv", "felt.mcap", "live.json"}) write(file, "an earlier one");
+  expect_failure(
+      "vestige live --from - --port file:felt --log log.csv --record felt.mcap --json live.json --force </dev/null", 1,
+      {"no whole frame arrived, so nothing was felt"});
+  for (const char* file : {"felt", "log.csv", "felt.mcap", "live.json"})
+    EXPECT_EQ(read_text_file(folder_ / file), "an earlier one") << file;
 }
 
 TEST_F(Live, FlagsThatSayNothingAreRefused) {
   for (const auto& [flags, cause] :
        {std::pair("--from vmc://localhost --port file:a", "has no port"),
-        std::pair("--from 2=vmc://127.0.0.1:9 --port file:a", "person 2 has a source, and 1 people have one"),
+        std::pair("--from nonsense --port file:a", "'nonsense' begins with neither vmc:// nor osc://"),
+        std::pair("--from tcp://127.0.0.1:9 --port file:a", "or write -, for lines of JSON on standard input"),
+        std::pair("--from 2=vmc://127.0.0.1:9 --port file:a",
+                  "person 2 has a source, and there are sources for 1 person"),
         std::pair("--from 1=vmc://127.0.0.1:9 --from 2=osc://127.0.0.1:9 --port 1=file:a",
                   "two people have the source"),
         std::pair("--from 1=- --from 2=vmc://127.0.0.1:9 --port 1=file:a", "lines on standard input are of one person"),

@@ -193,6 +193,7 @@ TEST_F(StreamToOtherSinks, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame)
   EXPECT_THAT(outcome.standard_error, HasSubstr("no board answers"));
   EXPECT_THAT(outcome.standard_error, HasSubstr("were not acknowledged"));
   EXPECT_EQ(json_in("stream.json")["acknowledged"], 0);
+  EXPECT_TRUE(json_in("stream.json")["latency_us"]["acknowledged"]["p50"].is_null());
   EXPECT_FALSE(json_in("stream.json")["off_acknowledged"]);
   EXPECT_FALSE(json_in("stream.json")["zeros_acknowledged"]);
   EXPECT_THAT(outcome.standard_error, HasSubstr("nothing confirms that all actuators are off"));

@@ -101,6 +101,8 @@ TEST_F(LiveLines, ThatAreWrongAreLeftOutAndCounted) {
       "{\"colliders\":[5]}\n",
       "{\"colliders\":[{\"id\":-1,\"position\":[0,0,0]}]}\n",
       "{\"colliders\":[{\"id\":1,\"position\":[0,0]}]}\n",
+      "{\"colliders\":[{\"id\":1,\"position\":[1e999,0,0]}]}\n",
+      "{\"colliders\":[{\"id\":1,\"position\":[NaN,0,0]}]}\n",
       "{\"colliders\":[{\"id\":1,\"position\":[0,0,0]},{\"id\":1,\"position\":[0,0,0]}]}\n",
       "{\"colliders\":[{\"id\":1,\"position\":[0,0,0],\"radius\":-1}]}\n",
       "{\"colliders\":[{\"id\":1,\"position\":[0,0,0],\"radius\":11}]}\n",

@@ -7,11 +7,14 @@
 
 #include <fstream>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_file/small_trace.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/nanoseconds.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/recording/recording_thread.hpp"
@@ -231,6 +234,19 @@ TEST_F(RecorderTest, ASnapshotOfARingIsATraceOfItsOwn) {
   EXPECT_EQ(indexes(folder_ / "man-0001.mcap"), range(20, 30));
   EXPECT_EQ(indexes(folder_ / "man-0002.mcap"), range(30, 40));
   EXPECT_EQ(indexes(folder_ / "man.mcap"), range(40, 50));
+}
+
+TEST_F(RecorderTest, ASnapshotThatWasWrittenIsTold) {
+  std::vector<std::pair<std::filesystem::path, double>> told;
+  Recorder::Target where = target({.ring_s = 0.01});
+  where.snapshot_written = [&](const std::filesystem::path& path, double seconds) { told.emplace_back(path, seconds); };
+  Recorder recorder(std::move(where));
+  const auto frame = [](std::uint64_t i) { return test::frame(i, kNodes, kColliders); };
+  for (std::uint64_t i = 0; i < 30; ++i) recorder.write(frame(i));
+  recorder.snapshot();
+  recorder.finish();
+  const double seconds = static_cast<double>(frame(29).time_ns - frame(20).time_ns) / kNanosecondsPerSecond;
+  EXPECT_THAT(told, ElementsAre(std::pair(folder_ / "man-0001.mcap", seconds)));
 }
 
 TEST_F(RecorderTest, ASnapshotThatFailsIsSaidAndTheRingIsWrittenAllTheSame) {
