@@ -62,8 +62,8 @@ nlohmann::ordered_json link_of(const Wearer& wearer) {
 std::string summary_of(const Wearer& wearer, std::string_view from) {
   const SenderStatistics& sender = wearer.sent();
   const OpenSink& sink = wearer.sink();
-  std::string text = fmt::format("sent {}, {} of them changes; {} superseded by newer ones",
-                                 counted(sender.sent, "frame"), sender.changes, counted(sender.superseded, "change"));
+  std::string text = fmt::format("sent {}, {} of them changes; superseded by newer ones: {}",
+                                 counted(sender.sent, "frame"), sender.changes, sender.superseded);
   text += sink.sink().acknowledges() ? fmt::format("; {} acknowledged\n", sender.acknowledged) : "\n";
   if (sender.written.count() != 0) text += fmt::format("{} to last byte written: {}\n", from, describe(sender.written));
   if (sender.acknowledged_after.count() != 0)

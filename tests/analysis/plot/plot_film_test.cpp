@@ -285,7 +285,7 @@ TEST_F(PlotFilmTest, SaysWhatIsNotFinite) {
   ASSERT_LE(test::run("vestige record -q --live - -o again.mcap < again.ndjson", folder_.path()).exit_code, 3);
   const test::Outcome outcome = run("film again.mcap --fps 1 --width 320");
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.standard_error, AllOf(HasSubstr("again.mcap: 1 poses"), HasSubstr("the first in frame 10")));
+  EXPECT_THAT(outcome.standard_error, AllOf(HasSubstr("again.mcap: 1 pose and"), HasSubstr("the first in frame 10")));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "again-film.webp"));
 }
 

@@ -347,7 +347,7 @@ TEST_F(PlotTest, WrongUsageExitsWith2) {
   EXPECT_THAT(run("scen a.mcap").standard_error, HasSubstr("scen: there is no such figure\n  did you mean 'scene'?"));
   const Outcome standard_output = run("timeline a.csv -o -");
   EXPECT_EQ(standard_output.exit_code, 2);
-  EXPECT_THAT(standard_output.standard_error, HasSubstr("name OUT"));
+  EXPECT_THAT(standard_output.standard_error, HasSubstr("name a file: -o FILE"));
   EXPECT_EQ(run("--help").exit_code, 0);
 }
 
