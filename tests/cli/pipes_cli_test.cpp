@@ -47,7 +47,7 @@ TEST_F(PipesAndInterrupts, InterruptedRecordingLeavesAValidTrace) {
 }
 
 TEST_F(PipesAndInterrupts, AnInterruptedPageOrCopyIsAFailureThatLeavesNothing) {
-  ASSERT_EQ(run("vestige record -q --count 3 --rate 100 --duration 10 -o long.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige record -q --count 3 --rate 1000 --duration 10 -o long.mcap").exit_code, 0);
   for (const std::string verb : {"view", "viz"})
     expect_failure("vestige " + verb + " long.mcap --detector exact -o out & P=$!; " + interrupt(), 1,
                    {": stopped by Ctrl-C; nothing was written\n  start it again"}, "out");
