@@ -17,6 +17,11 @@ constexpr std::pair<std::string_view, const char*> kWrites[] = {
 
 }  // namespace
 
+void require_folder(const std::filesystem::path& folder, std::string_view remedy) {
+  if (std::filesystem::is_directory(folder)) return;
+  throw Error(folder.string(), std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder", remedy);
+}
+
 void refuse_other_results(const std::filesystem::path& folder, std::string_view verb) {
   std::error_code ignored;
   if (!std::filesystem::exists(folder / "run.json", ignored)) return;

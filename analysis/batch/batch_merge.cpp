@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "analysis/base/results_folder.hpp"
 #include "analysis/batch/batch_folder.hpp"
 #include "analysis/batch/batch_plan.hpp"
 #include "traces/base/error.hpp"
@@ -32,8 +33,7 @@ struct ShardFolder {
 ShardFolder read_shard(const std::string& folder) {
   ShardFolder shard = {folder, {}, {}};
   const std::string path = shard.path("run.json");
-  if (!std::filesystem::is_directory(folder))
-    throw Error(folder, std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder", kRemedy);
+  require_folder(folder, kRemedy);
   if (!std::filesystem::exists(path)) throw Error(folder, "contains no batch (no run.json)", kRemedy);
   shard.run = read_json_object(path, kRemedy);
   try {

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "analysis/base/results_folder.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/plot/data/crowd_data.hpp"
 #include "analysis/plot/figures/accuracy_figure.hpp"
@@ -39,9 +40,7 @@ int draw_results(const Options& options, const char* name,
   const std::filesystem::path& folder = options.inputs.front();
   const std::filesystem::path results = folder / fmt::format("{}.json", name);
   const std::string remedy = fmt::format("name a folder that 'vestige {} -o' wrote", name);
-  if (!std::filesystem::is_directory(folder))
-    throw Error(folder.string(), std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder",
-                remedy);
+  require_folder(folder, remedy);
   if (!std::filesystem::exists(results)) throw Error(results.string(), "there is no such file", remedy);
   return write_figure(options, (options.output.empty() ? folder : options.output) / name,
                       [&] { return figure_of(folder); });

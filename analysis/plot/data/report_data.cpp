@@ -7,6 +7,7 @@
 #include <span>
 
 #include "analysis/base/json_field.hpp"
+#include "analysis/base/results_folder.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/files/input_file.hpp"
@@ -311,9 +312,7 @@ void require_there(const std::filesystem::path& file) {
 }
 
 ReportData read_report(const std::filesystem::path& folder) {
-  if (!std::filesystem::is_directory(folder))
-    throw Error(folder.string(), std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder",
-                "name the folder that 'vestige batch -o' wrote");
+  require_folder(folder, "name the folder that 'vestige batch -o' wrote");
   if (std::filesystem::exists(folder / "accuracy.json"))
     throw Error(folder.string(), "is of 'vestige accuracy', which ranks no maps: accuracy.png and missed.html show it",
                 "name the folder that 'vestige batch -o' wrote");
