@@ -24,14 +24,11 @@ namespace {
 
 /// Quantiles and counts, in milliseconds.
 nlohmann::ordered_json stage_json(const LatencyHistogram& latency) {
-  nlohmann::ordered_json json = {
-      {"p50_ms", nullptr}, {"p95_ms", nullptr}, {"p99_ms", nullptr}, {"max_ms", nullptr}, {"count", latency.count()}};
-  if (latency.count() != 0) {
-    json["p50_ms"] = latency.quantile_us(0.5) / 1e3;
-    json["p95_ms"] = latency.quantile_us(0.95) / 1e3;
-    json["p99_ms"] = latency.quantile_us(0.99) / 1e3;
-    json["max_ms"] = latency.max_us() / 1e3;
-  }
+  nlohmann::ordered_json json;
+  const nlohmann::ordered_json quantiles = to_json(latency);
+  for (const auto& [name, us] : quantiles.items())
+    json[name + "_ms"] = us.is_null() ? us : nlohmann::ordered_json(us.get<double>() / 1e3);
+  json["count"] = latency.count();
   json["up_to_ms"] = nlohmann::ordered_json::array();
   json["counts"] = nlohmann::ordered_json::array();
   latency.for_each_class([&](double upper_us, std::uint64_t count) {
