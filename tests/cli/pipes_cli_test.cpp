@@ -22,12 +22,6 @@ class PipesAndInterrupts : public test::CommandLineTest {
     return "until [ -n \"$(find . -name '*" + name + "*' -size +" + std::to_string(bytes - 1) +
            "c)\" ] || ! kill -0 $P; do sleep 0.01; done; ";
   }
-
-  /// Waits until the process catches SIGINT, whose bit is the second of the mask, and sends it.
-  static std::string interrupt() {
-    return "until grep -qs '^SigCgt:.*[2367abef]$' /proc/$P/status || ! kill -0 $P; do sleep 0.01; done; kill -INT $P; "
-           "wait $P";
-  }
 };
 
 TEST_F(PipesAndInterrupts, PipesATraceFromOneVerbToTheNext) {
@@ -49,7 +43,7 @@ TEST_F(PipesAndInterrupts, InterruptedRecordingLeavesAValidTrace) {
 TEST_F(PipesAndInterrupts, AnInterruptedPageOrCopyIsAFailureThatLeavesNothing) {
   ASSERT_EQ(run("vestige record -q --count 3 --rate 1000 --duration 10 -o long.mcap").exit_code, 0);
   for (const std::string verb : {"view", "viz"})
-    expect_failure("vestige " + verb + " long.mcap --detector exact -o out & P=$!; " + interrupt(), 1,
+    expect_failure("vestige " + verb + " long.mcap --detector exact -o out & P=$!; " + test::interrupt(), 1,
                    {": stopped by Ctrl-C; nothing was written\n  start it again"}, "out");
 }
 

@@ -31,4 +31,11 @@ inline Outcome run(const std::string& command, const std::filesystem::path& fold
   return outcome;
 }
 
+/// Returns shell code that waits until the process $P catches SIGINT, whose bit is the second of the mask, sends it,
+/// and waits for the end.
+inline std::string interrupt() {
+  return "until grep -qs '^SigCgt:.*[2367abef]$' /proc/$P/status || ! kill -0 $P; do sleep 0.01; done; kill -INT $P; "
+         "wait $P";
+}
+
 }  // namespace vestige::test

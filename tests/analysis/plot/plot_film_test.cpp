@@ -367,11 +367,7 @@ TEST_F(PlotFilmTest, WhatCannotBeDoneIsSaidAndNothingIsWritten) {
 TEST_F(PlotFilmTest, AnInterruptedFilmIsAFailureThatLeavesNothing) {
   record("--animation turn --colliders none --rate 25 --duration 59");
   const std::size_t files = file_count();
-  const test::Outcome outcome = test::run(
-      "vestige-plot film box.mcap & P=$!\n"
-      "until grep -qs '^SigCgt:.*[2367abef]$' /proc/$P/status || ! kill -0 $P; do sleep 0.01; done\n"
-      "kill -INT $P; wait $P",
-      folder_.path());
+  const test::Outcome outcome = test::run("vestige-plot film box.mcap & P=$!; " + test::interrupt(), folder_.path());
   EXPECT_EQ(outcome.exit_code, 1) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_error,
               HasSubstr("box-film.webp: stopped by Ctrl-C; nothing was written\n  start it again"));
